@@ -1,0 +1,58 @@
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "base/check.h"
+
+namespace rhexis {
+namespace {
+
+struct Pool {
+  int threads = tbb::info::default_concurrency();
+  tbb::task_arena arena{threads};
+};
+
+Pool& pool() {
+  static Pool instance;
+  return instance;
+}
+
+}  // namespace
+
+void set_thread_count(int threads) {
+  Pool& p = pool();
+  p.threads = threads > 0 ? threads : tbb::info::default_concurrency();
+  p.arena.terminate();
+  p.arena.initialize(p.threads);
+}
+
+int thread_count() { return pool().threads; }
+
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
+  Pool& p = pool();
+  if (p.threads == 1 || count < 2) {
+    for (std::size_t i = 0; i < count; ++i) body(i);
+    return;
+  }
+  p.arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
+                      });
+  });
+}
+
+void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+  RHEXIS_CHECK(grain > 0, "grain is {}", grain);
+  const std::size_t pieces = (count + grain - 1) / grain;
+  parallel_for(pieces, [&](std::size_t i) { body(i * grain, std::min(count, (i + 1) * grain)); });
+}
+
+}  // namespace rhexis
