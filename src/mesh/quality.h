@@ -21,8 +21,15 @@ struct Quality {
 /// 3 r_in / r_circ of one tet, in [0, 1].
 [[nodiscard]] double radius_ratio(const std::array<Vec3, 4>& x);
 
-/// The thickness of the body as a length: the largest diameter of a sphere inside it, estimated as twice the largest
-/// distance from an interior point (nodes and tet centroids) to the boundary surface, m.
+/// Share of the surface that may be thinner than what `thickness` returns. Below 1/3, so that a box gives its smallest
+/// side exactly, and well above what corners, rims and cut ends take of a surface.
+inline constexpr double kThicknessShare = 0.25;
+
+/// The thickness of the body as a length, m. At each boundary triangle the body is as thick as the way from the
+/// triangle's centre, along the inward normal, to where it leaves the body again; the thickness of the whole is the
+/// length that a quarter of the surface, by area, stays below. A plate gives its height, a wall its thickness, a bar
+/// its smallest side, a solid rod its diameter (less the faceting). 0 for a mesh without tets. Takes a mesh without
+/// defects; O(n^(1/3)) tets are crossed per boundary triangle.
 [[nodiscard]] double thickness(const TetMesh& mesh);
 
 }  // namespace rhexis::mesh

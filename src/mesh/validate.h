@@ -9,13 +9,23 @@
 
 namespace rhexis::mesh {
 
-enum class DefectKind { inverted_tet, flat_tet, duplicate_tet, repeated_node, unconnected_tet, non_manifold_face, unused_node, bad_index, not_finite };
+enum class DefectKind {
+  inverted_tet,
+  flat_tet,
+  duplicate_tet,
+  repeated_node,
+  unconnected_tet,
+  non_manifold_face,
+  unused_node,
+  bad_index,
+  not_finite
+};
 
 struct Defect {
   DefectKind kind = DefectKind::inverted_tet;
-  TetId tet;           ///< invalid when the defect is of a node
-  NodeId node;         ///< invalid when the defect is of a tet or face
-  std::string what;    ///< one line: "tet 17 is flat (volume 1.2e-19 m^3, height over longest edge 3e-10)"
+  TetId tet;         ///< invalid when the defect is of a node
+  NodeId node;       ///< invalid when the defect is of a tet or face
+  std::string what;  ///< one line: "tet 17 is flat (volume 1.2e-19 m^3, height over longest edge 3e-10)"
 };
 
 /// A tet is flat when its smallest height is below this fraction of its longest edge.
