@@ -57,6 +57,8 @@ class Model {
   [[nodiscard]] virtual std::string_view name() const = 0;  ///< as in the scene: "hyperelastic"
   [[nodiscard]] virtual const DisplacementSpace& space() const = 0;
   [[nodiscard]] virtual std::int32_t pressure_unknowns() const { return 0; }
+  /// True when lambda is continuous with one unknown per vertex (Taylor-Hood), false when it is one per tet.
+  [[nodiscard]] virtual bool pressure_at_vertices() const { return false; }
   [[nodiscard]] virtual bool is_linear() const { return false; }
   /// False for models whose law has no answer at J <= 0 (a step into that is cut); true where inversion is defined
   /// (linear, mass-spring, corotated, St. Venant-Kirchhoff): it is counted and reported instead.
