@@ -13,19 +13,28 @@
 
 namespace rhexis::linalg {
 
-/// Lower triangle with the diagonal: columns of a row ascend and end with the row itself.
+/// Lower triangle with the diagonal: columns of a row ascend and end with the row itself. Made by make_block_pattern
+/// alone, which keeps the two halves in step.
 struct BlockPattern {
   std::vector<std::int32_t> row_start;  ///< rows + 1 offsets into `column`
   std::vector<std::int32_t> column;     ///< block column of each stored block, <= its row
 
-  [[nodiscard]] std::int32_t rows() const { return static_cast<std::int32_t>(row_start.size()) - 1; }
+  /// The same blocks seen from their columns, without the diagonal: what lets a product gather instead of scatter, so
+  /// that every row is summed by one thread in one order.
+  std::vector<std::int32_t> below_start;  ///< rows + 1 offsets into the next two
+  std::vector<std::int32_t> below_row;    ///< rows below the diagonal in this column, ascending
+  std::vector<std::int32_t> below_block;  ///< index of that block
+
+  [[nodiscard]] std::int32_t rows() const {
+    return row_start.empty() ? 0 : static_cast<std::int32_t>(row_start.size()) - 1;
+  }
   [[nodiscard]] std::size_t block_count() const { return column.size(); }
   /// Index of the block (row, col), row >= col; -1 when the pattern has none.
   [[nodiscard]] std::int32_t find(std::int32_t row, std::int32_t col) const;
 };
 
 /// Every pair of nodes of an element, and every diagonal. `connectivity` lists the nodes element by element,
-/// `nodes_per_element` each.
+/// `nodes_per_element` each, all in [0, rows).
 [[nodiscard]] BlockPattern make_block_pattern(std::int32_t rows, std::span<const std::int32_t> connectivity,
                                               std::int32_t nodes_per_element);
 

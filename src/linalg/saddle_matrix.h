@@ -22,7 +22,9 @@ namespace rhexis::linalg {
 struct CsrPattern {
   std::vector<std::int32_t> row_start;
   std::vector<std::int32_t> column;
-  [[nodiscard]] std::int32_t rows() const { return static_cast<std::int32_t>(row_start.size()) - 1; }
+  [[nodiscard]] std::int32_t rows() const {
+    return row_start.empty() ? 0 : static_cast<std::int32_t>(row_start.size()) - 1;
+  }
 };
 
 /// B^T: row = pressure unknown, column = node of the displacement space, entry = 1 x 3.
@@ -49,10 +51,12 @@ struct SymmetricCsr {
   [[nodiscard]] std::int32_t rows() const { return pattern ? pattern->rows() : 0; }
   /// y = C x.
   void multiply(const VectorX& x, VectorX& y) const;
+  /// y += scale * C x.
+  void add_product(const VectorX& x, double scale, VectorX& y) const;
 };
 
-/// The skew part of the load stiffness: K(i, j) -= ..., strictly by blocks of the pattern of A (block (i, j) of the lower
-/// triangle is S, block (j, i) is -S^T; diagonal blocks are skew).
+/// The skew part of the load stiffness, added to A by blocks of A's pattern: block (i, j) of the lower triangle is S,
+/// block (j, i) is -S^T; diagonal blocks are skew.
 struct SkewBlocks {
   std::vector<double> values;  ///< 9 per block of A's pattern
 };
