@@ -1,7 +1,6 @@
 #include "base/parallel.h"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 
 #include <tbb/global_control.h>
@@ -17,6 +16,8 @@ namespace {
 struct Pool {
   int threads = tbb::info::default_concurrency();
   tbb::task_arena arena{threads};
+  // Lifts TBB's own limit, the number of cores: without it more threads are asked for than ever come.
+  std::optional<tbb::global_control> limit;
 };
 
 Pool& pool() {
@@ -30,6 +31,7 @@ void set_thread_count(int threads) {
   Pool& p = pool();
   p.threads = threads > 0 ? threads : tbb::info::default_concurrency();
   p.arena.terminate();
+  p.limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(p.threads));
   p.arena.initialize(p.threads);
 }
 
@@ -42,10 +44,9 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
     return;
   }
   p.arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
-                      });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1), [&](const tbb::blocked_range<std::size_t>& range) {
+      for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
+    });
   });
 }
 

@@ -1,0 +1,67 @@
+# Every command of this project; `make help` lists them. JOBS bounds what runs at once.
+JOBS ?= $(shell nproc)
+# Seconds that each fuzz target gets.
+FUZZ_SECONDS ?= 60
+# Handed on to Google Benchmark.
+ARGS ?=
+
+# ccache, where there is one, makes the second build cheap; nothing depends on it.
+launcher := $(if $(shell command -v ccache),-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+# $(call build_preset,NAME,TARGET): configures quietly and builds in build/NAME.
+build_preset = mkdir -p build && \
+  { cmake --preset $(1) $(launcher) >build/$(1).log 2>&1 || { cat build/$(1).log >&2; exit 1; }; } && \
+  cmake --build --preset $(1) --parallel $(JOBS) --target $(2) -- --quiet && echo "built build/$(1)"
+ctest := ctest --output-on-failure --no-tests=error --parallel $(JOBS)
+sources = git ls-files --cached --others --exclude-standard '*.h' '*.cpp'
+
+.DEFAULT_GOAL := build
+.PHONY: build demo test check-floors check-format format fuzz asan tsan tidy bench clean help
+
+build: ## the program: build/release/bin/rhexis
+	@tools/install build
+	@$(call build_preset,release,rhexis)
+
+demo: build ## solve the demonstration and leave files for ParaView in out/demo
+	@build/release/bin/rhexis demo --out out/demo
+
+# ctest comes last, so that its summary closes the output.
+test: ## all that must hold before a change lands: floors, format, sanitizers, fuzzing, tests
+	@tools/install test
+	@$(MAKE) --no-print-directory check-floors check-format asan fuzz
+	@$(call build_preset,release,all)
+	@$(ctest) --test-dir build/release
+
+check-floors: ## no include climbs the floors of ARCHITECTURE.md
+	@tools/check_floors
+
+check-format: ## the sources are as clang-format leaves them
+	@$(sources) | xargs clang-format-16 --dry-run --Werror && echo "format: clean"
+
+format: ## lay out the sources with clang-format
+	@$(sources) | xargs clang-format-16 -i
+
+fuzz: ## every reader of foreign files for FUZZ_SECONDS under libFuzzer and sanitizers
+	@$(call build_preset,fuzz,all)
+	@tools/run_fuzz.sh $(FUZZ_SECONDS)
+
+asan: ## the tests under AddressSanitizer and UndefinedBehaviorSanitizer
+	@$(call build_preset,asan,all)
+	@$(ctest) --test-dir build/asan
+
+tsan: ## the tests under ThreadSanitizer
+	@$(call build_preset,tsan,all)
+	@$(ctest) --test-dir build/tsan
+
+tidy: ## clang-tidy with the naming rules over src
+	@$(call build_preset,release,rhexis)
+	@run-clang-tidy-16 -quiet -p build/release -j $(JOBS) '$(CURDIR)/src/' && echo "tidy: clean"
+
+bench: ## the benchmarks; ARGS='--benchmark_filter=...' chooses
+	@$(call build_preset,release,rhexis_bench)
+	@build/release/bin/rhexis_bench $(ARGS)
+
+clean: ## remove what was built and made
+	@rm -rf build out
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
