@@ -7,12 +7,14 @@
 namespace rhexis::mesh {
 
 const NodeSet* TetMesh::find_node_set(std::string_view name) const {
-  const auto found = std::find_if(node_sets.begin(), node_sets.end(), [&](const NodeSet& set) { return set.name == name; });
+  const auto found =
+      std::find_if(node_sets.begin(), node_sets.end(), [&](const NodeSet& set) { return set.name == name; });
   return found == node_sets.end() ? nullptr : &*found;
 }
 
 const FaceSet* TetMesh::find_face_set(std::string_view name) const {
-  const auto found = std::find_if(face_sets.begin(), face_sets.end(), [&](const FaceSet& set) { return set.name == name; });
+  const auto found =
+      std::find_if(face_sets.begin(), face_sets.end(), [&](const FaceSet& set) { return set.name == name; });
   return found == face_sets.end() ? nullptr : &*found;
 }
 
@@ -35,7 +37,8 @@ double total_volume(const TetMesh& mesh) {
 double longest_edge(const TetMesh& mesh, TetId tet) {
   const std::array<Vec3, 4> x = corners(mesh, tet);
   double longest = 0.0;
-  for (const auto& [i, j] : kTetEdges) longest = std::max(longest, (x[static_cast<std::size_t>(i)] - x[static_cast<std::size_t>(j)]).norm());
+  for (const auto& [i, j] : kTetEdges)
+    longest = std::max(longest, (x[static_cast<std::size_t>(i)] - x[static_cast<std::size_t>(j)]).norm());
   return longest;
 }
 
