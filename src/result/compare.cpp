@@ -13,23 +13,26 @@ namespace fs = std::filesystem;
 using mesh::Field;
 using mesh::MeshFile;
 
-/// The meshes count as the same when no node is further apart than this fraction of the body's largest side: text formats
-/// may have rounded.
+/// The meshes count as the same when no node is further apart than this fraction of the body's largest side: text
+/// formats may have rounded.
 constexpr double kSamePosition = 1e-6;
 
 fs::path result_file(const fs::path& given) { return fs::is_directory(given) ? given / "result.vtkhdf" : given; }
 
 Expected<void> check_same_mesh(const MeshFile& a, const MeshFile& b, const fs::path& name_a, const fs::path& name_b) {
   if (a.mesh.node_count() != b.mesh.node_count() || a.mesh.tet_count() != b.mesh.tet_count())
-    return fail(fmt::format("{} nodes and {} tets, but '{}' has {} and {}", b.mesh.node_count(), b.mesh.tet_count(), name_a.string(), a.mesh.node_count(), a.mesh.tet_count()),
+    return fail(fmt::format("{} nodes and {} tets, but '{}' has {} and {}", b.mesh.node_count(), b.mesh.tet_count(),
+                            name_a.string(), a.mesh.node_count(), a.mesh.tet_count()),
                 "compare results on the same mesh", name_b.string());
   for (std::size_t t = 0; t < a.mesh.tet_count(); ++t)
     if (a.mesh.tets[t] != b.mesh.tets[t])
-      return fail(fmt::format("tet {} has other nodes than in '{}'", t, name_a.string()), "compare results on the same mesh", name_b.string());
+      return fail(fmt::format("tet {} has other nodes than in '{}'", t, name_a.string()),
+                  "compare results on the same mesh", name_b.string());
   const double allowed = kSamePosition * mesh::bounding_box(a.mesh).size().maxCoeff();
   for (std::size_t n = 0; n < a.mesh.node_count(); ++n)
     if ((a.mesh.nodes[n] - b.mesh.nodes[n]).norm() > allowed)
-      return fail(fmt::format("node {} lies elsewhere than in '{}'", n, name_a.string()), "compare results on the same mesh", name_b.string());
+      return fail(fmt::format("node {} lies elsewhere than in '{}'", n, name_a.string()),
+                  "compare results on the same mesh", name_b.string());
   return {};
 }
 
@@ -56,7 +59,10 @@ BoxDifference box_difference(const mesh::TetMesh& mesh, const Field& a, const Fi
   BoxDifference d;
   const std::size_t count = a.values.size() / 3;
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec3 percent = 100.0 * (Eigen::Map<const Vec3>(b.values.data() + 3 * i) - Eigen::Map<const Vec3>(a.values.data() + 3 * i)).cwiseAbs().cwiseQuotient(box);
+    const Vec3 percent =
+        100.0 * (Eigen::Map<const Vec3>(b.values.data() + 3 * i) - Eigen::Map<const Vec3>(a.values.data() + 3 * i))
+                    .cwiseAbs()
+                    .cwiseQuotient(box);
     d.mean += percent / static_cast<double>(count);
     d.largest = d.largest.cwiseMax(percent);
   }
@@ -65,7 +71,8 @@ BoxDifference box_difference(const mesh::TetMesh& mesh, const Field& a, const Fi
 
 const Field* find_like(const std::vector<Field>& fields, const Field& wanted) {
   const auto found = std::find_if(fields.begin(), fields.end(), [&](const Field& field) {
-    return field.name == wanted.name && field.centering == wanted.centering && field.components == wanted.components && field.values.size() == wanted.values.size();
+    return field.name == wanted.name && field.centering == wanted.centering && field.components == wanted.components &&
+           field.values.size() == wanted.values.size();
   });
   return found == fields.end() ? nullptr : &*found;
 }
@@ -89,11 +96,14 @@ Expected<Comparison> compare_results(const fs::path& a, const fs::path& b) {
       continue;
     }
     comparison.fields.push_back(difference(field, *other));
-    if (field.name == "displacement" && field.components == 3) comparison.displacement = box_difference(file_a->mesh, field, *other);
+    if (field.name == "displacement" && field.components == 3)
+      comparison.displacement = box_difference(file_a->mesh, field, *other);
   }
   for (const Field& field : file_b->fields)
     if (find_like(file_a->fields, field) == nullptr) comparison.only_in_one.push_back(field.name);
-  if (comparison.fields.empty()) return fail(fmt::format("no field in common with '{}'", name_a.string()), "compare two results of `rhexis solve`", name_b.string());
+  if (comparison.fields.empty())
+    return fail(fmt::format("no field in common with '{}'", name_a.string()), "compare two results of `rhexis solve`",
+                name_b.string());
   return comparison;
 }
 

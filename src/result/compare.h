@@ -17,11 +17,13 @@ namespace rhexis::result {
 struct FieldDifference {
   std::string name;
   mesh::Centering centering = mesh::Centering::point;
-  double largest = 0.0;           ///< max |b - a|, in the field's unit
-  double mean = 0.0;              ///< mean |b - a|
-  std::size_t largest_at = 0;     ///< node or tet of the largest
-  double scale = 0.0;             ///< max |a|
-  [[nodiscard]] double relative_largest() const { return scale > 0.0 ? largest / scale : (largest > 0.0 ? INFINITY : 0.0); }
+  double largest = 0.0;        ///< max |b - a|, in the field's unit
+  double mean = 0.0;           ///< mean |b - a|
+  std::size_t largest_at = 0;  ///< node or tet of the largest
+  double scale = 0.0;          ///< max |a|
+  [[nodiscard]] double relative_largest() const {
+    return scale > 0.0 ? largest / scale : (largest > 0.0 ? INFINITY : 0.0);
+  }
   [[nodiscard]] double relative_mean() const { return scale > 0.0 ? mean / scale : (mean > 0.0 ? INFINITY : 0.0); }
 };
 
@@ -32,9 +34,9 @@ struct BoxDifference {
 };
 
 struct Comparison {
-  std::vector<FieldDifference> fields;  ///< those that both results hold, in the order of the first
-  std::vector<std::string> only_in_one; ///< names of the others
-  BoxDifference displacement;           ///< zero when a result has no displacement
+  std::vector<FieldDifference> fields;   ///< those that both results hold, in the order of the first
+  std::vector<std::string> only_in_one;  ///< names of the others
+  BoxDifference displacement;            ///< zero when a result has no displacement
 };
 
 /// A and B are result files or the folders that `rhexis solve` wrote. The meshes must be the same: same nodes and tets

@@ -27,7 +27,8 @@ Field node_field(std::string name, const VectorX& values, std::size_t count) {
 
 }  // namespace
 
-std::vector<Field> make_fields(const mesh::TetMesh& mesh, const model::Model& model, const model::State& state, const VectorX& reaction) {
+std::vector<Field> make_fields(const mesh::TetMesh& mesh, const model::Model& model, const model::State& state,
+                               const VectorX& reaction) {
   const model::TetFields tets = model.fields(state);
   const std::size_t count = mesh.tet_count();
   Field pressure{"pressure", Centering::cell, 1, std::vector<double>(count)};
@@ -45,7 +46,8 @@ std::vector<Field> make_fields(const mesh::TetMesh& mesh, const model::Model& mo
   std::vector<Field> fields;
   fields.push_back(node_field("displacement", state.u, mesh.node_count()));
   if (reaction.size() > 0) fields.push_back(node_field("reaction", reaction, mesh.node_count()));
-  if (model.pressure_at_vertices()) fields.push_back({"lambda", Centering::point, 1, std::vector<double>(state.lambda.begin(), state.lambda.end())});
+  if (model.pressure_at_vertices())
+    fields.push_back({"lambda", Centering::point, 1, std::vector<double>(state.lambda.begin(), state.lambda.end())});
   fields.push_back({"lambda", Centering::cell, 1, tets.lambda});
   fields.push_back(std::move(pressure));
   fields.push_back({"stress", Centering::cell, 6, tets.stress});
@@ -82,7 +84,8 @@ Measures measure(const mesh::TetMesh& mesh, const model::Model& model, const mod
   if (area > 0.0 && mean_lambda > 0.0) measures.pressure_jump = std::sqrt(jump_square / area) / mean_lambda;
 
   for (std::size_t n = 0; n < mesh.node_count(); ++n)
-    measures.max_displacement = std::max(measures.max_displacement, state.u.segment<3>(static_cast<Eigen::Index>(3 * n)).norm());
+    measures.max_displacement =
+        std::max(measures.max_displacement, state.u.segment<3>(static_cast<Eigen::Index>(3 * n)).norm());
   return measures;
 }
 

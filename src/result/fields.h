@@ -11,17 +11,19 @@
 
 namespace rhexis::result {
 
-/// PointData `displacement` (m) and `reaction` (N), CellData `lambda`, `pressure` (= -lambda), `stress` (Cauchy), `principal_max`,
-/// `von_mises` (all Pa) and `J`; Taylor-Hood adds `lambda` on the points. Only the nodes of the mesh, in its
-/// order. `reaction` has 3 values per node of the model's displacement space, or is empty: the field is left out then.
-[[nodiscard]] std::vector<mesh::Field> make_fields(const mesh::TetMesh& mesh, const model::Model& model, const model::State& state,
-                                                   const VectorX& reaction);
+/// PointData `displacement` (m) and `reaction` (N), CellData `lambda`, `pressure` (= -lambda), `stress` (Cauchy),
+/// `principal_max`, `von_mises` (all Pa) and `J`; Taylor-Hood adds `lambda` on the points. Only the nodes of the mesh,
+/// in its order. `reaction` has 3 values per node of the model's displacement space, or is empty: the field is left out
+/// then.
+[[nodiscard]] std::vector<mesh::Field> make_fields(const mesh::TetMesh& mesh, const model::Model& model,
+                                                   const model::State& state, const VectorX& reaction);
 
 /// Numbers of a state that the summary reports.
 struct Measures {
-  double volume_ratio = 1.0;      ///< deformed over reference volume
-  int inverted_tets = 0;          ///< tets with J <= 0
-  double pressure_jump = 0.0;     ///< area-weighted RMS of the jumps of lambda over interior faces / volume-weighted mean |lambda|
+  double volume_ratio = 1.0;  ///< deformed over reference volume
+  int inverted_tets = 0;      ///< tets with J <= 0
+  double pressure_jump =
+      0.0;  ///< area-weighted RMS of the jumps of lambda over interior faces / volume-weighted mean |lambda|
   double max_displacement = 0.0;  ///< m
 };
 [[nodiscard]] Measures measure(const mesh::TetMesh& mesh, const model::Model& model, const model::State& state);

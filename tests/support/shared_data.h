@@ -12,5 +12,5 @@ inline std::filesystem::path shared_dir() { return RHEXIS_SHARED_DIR; }
 
 }  // namespace rhexis::test
 
-#define RHEXIS_SKIP_WITHOUT(path)                                                            \
+#define RHEXIS_SKIP_WITHOUT(path) \
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "not here: " << (path).string()

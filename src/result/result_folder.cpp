@@ -1,0 +1,42 @@
+#include "result/result_folder.h"
+
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "base/atomic_file.h"
+
+namespace rhexis::result {
+
+namespace fs = std::filesystem;
+
+Expected<ResultFolder> ResultFolder::open(const fs::path& path) {
+  std::error_code code;
+  fs::create_directories(path / "steps", code);
+  if (code)
+    return fail("cannot make the folder: " + code.message(), "choose a folder that can be written to", path.string());
+  for (const char* stale : {"result.vtkhdf", "summary.json", "steps.pvd"}) fs::remove(path / stale, code);
+  for (const fs::directory_entry& entry : fs::directory_iterator(path / "steps", code)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("step_") && name.ends_with(".vtu")) fs::remove(entry.path(), code);
+  }
+  return ResultFolder(path);
+}
+
+Expected<void> ResultFolder::write_step(double load, const mesh::TetMesh& mesh,
+                                        const std::vector<mesh::Field>& fields) {
+  const std::string name = fmt::format("steps/step_{:04}.vtu", series_.size() + 1);
+  if (Expected<void> written = mesh::write_mesh_file(path_ / name, mesh, fields); !written) return written;
+  series_.push_back({load, name});
+  return mesh::write_series(path_ / "steps.pvd", series_);
+}
+
+Expected<void> ResultFolder::write_result(const mesh::TetMesh& mesh, const std::vector<mesh::Field>& fields) {
+  return mesh::write_mesh_file(path_ / "result.vtkhdf", mesh, fields);
+}
+
+Expected<void> ResultFolder::write_summary(const nlohmann::ordered_json& summary) {
+  return write_atomically(path_ / "summary.json", summary.dump(2) + '\n');
+}
+
+}  // namespace rhexis::result

@@ -1,0 +1,39 @@
+#pragma once
+
+/// The folder a run leaves behind: result.vtkhdf, steps.pvd with a VTU per step, summary.json. Every file appears
+/// whole; a run that is killed keeps the steps it finished.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "mesh/field.h"
+#include "mesh/io/mesh_file.h"
+#include "mesh/tet_mesh.h"
+
+namespace rhexis::result {
+
+class ResultFolder {
+ public:
+  /// Makes the folder and removes the result, summary and steps of an earlier run in it, so that nothing stale is taken
+  /// for new.
+  static Expected<ResultFolder> open(const std::filesystem::path& path);
+
+  /// Writes steps/step_NNNN.vtu and the series up to it. `load`: fraction of the whole load, the series' value.
+  Expected<void> write_step(double load, const mesh::TetMesh& mesh, const std::vector<mesh::Field>& fields);
+  Expected<void> write_result(const mesh::TetMesh& mesh, const std::vector<mesh::Field>& fields);
+  Expected<void> write_summary(const nlohmann::ordered_json& summary);
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  explicit ResultFolder(std::filesystem::path path) : path_(std::move(path)) {}
+
+  std::filesystem::path path_;
+  std::vector<mesh::SeriesEntry> series_;
+};
+
+}  // namespace rhexis::result
