@@ -15,6 +15,7 @@ ctest := ctest --output-on-failure --no-tests=error --parallel $(JOBS)
 sources = git ls-files --cached --others --exclude-standard '*.h' '*.cpp'
 
 .DEFAULT_GOAL := build
+.NOTPARALLEL:
 .PHONY: build demo test check-floors check-format format fuzz asan tsan tidy bench clean help
 
 build: ## the program: build/release/bin/rhexis
@@ -50,7 +51,7 @@ asan: ## the tests under AddressSanitizer and UndefinedBehaviorSanitizer
 
 tsan: ## the tests under ThreadSanitizer
 	@$(call build_preset,tsan,all)
-	@$(ctest) --test-dir build/tsan
+	@TSAN_OPTIONS=suppressions=$(CURDIR)/tools/tsan.supp $(ctest) --test-dir build/tsan
 
 tidy: ## clang-tidy with the naming rules over src
 	@$(call build_preset,release,rhexis)
