@@ -22,8 +22,8 @@ build: ## the program: build/release/bin/rhexis
 	@tools/install build
 	@$(call build_preset,release,rhexis)
 
-demo: build ## solve the demonstration and leave files for ParaView in out/demo
-	@build/release/bin/rhexis demo --out out/demo
+demo: build ## the vessel of the paper with all six models: a table, and files for ParaView in out/demo
+	@tools/demo out/demo
 
 # ctest comes last, so that its summary closes the output.
 test: ## all that must hold before a change lands: floors, format, sanitizers, fuzzing, tests
