@@ -1,0 +1,28 @@
+#include "model/make_model.h"
+
+#include "base/check.h"
+#include "element/tet_kernels.h"
+#include "model/mass_spring.h"
+#include "model/p1_displacement.h"
+#include "model/p1_hyperelastic.h"
+#include "model/taylor_hood.h"
+
+namespace rhexis::model {
+
+std::string_view name_of(ModelKind kind) { return kModelNames[static_cast<std::size_t>(kind)]; }
+
+std::unique_ptr<Model> make_model(const mesh::TetMesh& mesh, const ModelSettings& settings) {
+  const element::TetKernels& kernels = element::tet_kernels();
+  switch (settings.kind) {
+    case ModelKind::mass_spring: return make_mass_spring(mesh, settings);
+    case ModelKind::linear: return make_linear(mesh, settings, kernels);
+    case ModelKind::corotated: return make_corotated(mesh, settings, kernels);
+    case ModelKind::geometrically_nonlinear: return make_geometrically_nonlinear(mesh, settings, kernels);
+    case ModelKind::hyperelastic: return make_hyperelastic(mesh, settings, kernels);
+    case ModelKind::taylor_hood: return make_taylor_hood(mesh, settings);
+  }
+  RHEXIS_CHECK(false, "model kind {}", static_cast<int>(settings.kind));
+  return nullptr;
+}
+
+}  // namespace rhexis::model

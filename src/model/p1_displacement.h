@@ -1,0 +1,26 @@
+#pragma once
+
+/// The displacement models on linear tets: `linear`, `corotated`, `geometrically-nonlinear`. They differ in the
+/// response of the kernels alone.
+
+#include <memory>
+
+#include "model/make_model.h"
+#include "model/model.h"
+
+namespace rhexis::element {
+struct TetKernels;
+}
+
+namespace rhexis::model {
+
+/// Reads elastic and, for corotated, corotated_tangent of the settings.
+[[nodiscard]] std::unique_ptr<Model> make_linear(const mesh::TetMesh& mesh, const ModelSettings& settings,
+                                                 const element::TetKernels& kernels);
+[[nodiscard]] std::unique_ptr<Model> make_corotated(const mesh::TetMesh& mesh, const ModelSettings& settings,
+                                                    const element::TetKernels& kernels);
+[[nodiscard]] std::unique_ptr<Model> make_geometrically_nonlinear(const mesh::TetMesh& mesh,
+                                                                  const ModelSettings& settings,
+                                                                  const element::TetKernels& kernels);
+
+}  // namespace rhexis::model

@@ -1,0 +1,57 @@
+#include "model/pressure_matrix.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "mesh/surface.h"
+
+namespace rhexis::model {
+
+linalg::SymmetricCsr make_pressure_matrix(const mesh::TetMesh& mesh, double kappa, double beta) {
+  struct Jump {
+    std::int32_t row, col;  ///< row > col
+    double factor;
+  };
+  std::vector<Jump> jumps;
+  if (beta > 0.0) {
+    std::vector<double> h(mesh.tet_count());
+    for (std::size_t t = 0; t < h.size(); ++t) h[t] = mesh::longest_edge(mesh, TetId(t));
+    const mesh::FaceTable faces = mesh::find_faces(mesh);
+    jumps.reserve(faces.interior.size());
+    for (const mesh::InteriorFace& face : faces.interior) {
+      const TetId a = face.first.tet, b = face.second.tet;
+      const double factor = beta * (h[a.index()] + h[b.index()]) * mesh::face_area(mesh, face.first) / kappa;
+      jumps.push_back({std::max(a, b).value(), std::min(a, b).value(), factor});
+    }
+    std::sort(jumps.begin(), jumps.end(),
+              [](const Jump& x, const Jump& y) { return std::pair(x.row, x.col) < std::pair(y.row, y.col); });
+  }
+
+  auto pattern = std::make_shared<linalg::CsrPattern>();
+  pattern->row_start.push_back(0);
+  std::size_t next = 0;
+  for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+    const auto row = static_cast<std::int32_t>(t);
+    for (; next < jumps.size() && jumps[next].row == row; ++next) pattern->column.push_back(jumps[next].col);
+    pattern->column.push_back(row);
+    pattern->row_start.push_back(static_cast<std::int32_t>(pattern->column.size()));
+  }
+
+  linalg::SymmetricCsr C(pattern);
+  const auto diagonal = [&](std::size_t row) -> double& {
+    return C.values[static_cast<std::size_t>(pattern->row_start[row + 1]) - 1];
+  };
+  for (std::size_t t = 0; t < mesh.tet_count(); ++t) diagonal(t) = mesh::signed_volume(mesh, TetId(t)) / kappa;
+  next = 0;
+  for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+    auto at = static_cast<std::size_t>(pattern->row_start[t]);
+    for (; next < jumps.size() && jumps[next].row == static_cast<std::int32_t>(t); ++next) {
+      C.values[at++] = -jumps[next].factor;
+      diagonal(t) += jumps[next].factor;
+      diagonal(static_cast<std::size_t>(jumps[next].col)) += jumps[next].factor;
+    }
+  }
+  return C;
+}
+
+}  // namespace rhexis::model
