@@ -114,7 +114,7 @@ class LatticeMesher {
     Vec3 x;
     for (int axis = 0; axis < 3; ++axis) {
       const auto i = static_cast<std::size_t>(axis);
-      x[axis] = static_cast<double>(doubled[i]) * size_[axis] / static_cast<double>(2 * n_[i]);
+      x[axis] = part_of(size_[axis], doubled[i], 2 * n_[i]);
     }
     return x;
   }

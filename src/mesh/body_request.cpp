@@ -9,16 +9,25 @@
 namespace rhexis::mesh {
 namespace {
 
-/// 0 when none was found.
+/// Goes from `nodes` up or down, one by one at first, then in steps of 1%; a count found by such a step is pulled back
+/// by bisection towards the last one that could not be had. 0 when there is none.
 int nearest_count(int nodes, int direction, const std::function<bool(int)>& can_have) {
   constexpr int kOneByOne = 50;
-  int step = 1;
+  constexpr int kFewest = 4;
   int tried = 0;
-  for (std::int64_t n = std::int64_t{nodes} + direction; n >= 4 && n <= kMaxGeneratedNodes; n += direction * step) {
-    if (can_have(static_cast<int>(n))) return static_cast<int>(n);
-    if (++tried >= kOneByOne) step = std::max(1, static_cast<int>(n / 100));
+  int missed = nodes;
+  int found = nodes;
+  do {
+    const int step = ++tried <= kOneByOne ? 1 : std::max(1, missed / 100);
+    missed = found;
+    found += direction * step;
+    if (found < kFewest || found > kMaxGeneratedNodes) return 0;
+  } while (!can_have(found));
+  while (std::abs(found - missed) > 1) {
+    const int middle = missed + (found - missed) / 2;
+    (can_have(middle) ? found : missed) = middle;
   }
-  return 0;
+  return found;
 }
 
 }  // namespace

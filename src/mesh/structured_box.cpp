@@ -1,6 +1,7 @@
 #include <Eigen/Dense>
 
 #include "base/check.h"
+#include "mesh/body_request.h"
 #include "mesh/generate.h"
 #include "mesh/generated_sets.h"
 
@@ -43,8 +44,8 @@ TetMesh make_structured_box(const Vec3& size, const std::array<int, 3>& cells) {
   for (int k = 0; k <= cells[2]; ++k)
     for (int j = 0; j <= cells[1]; ++j)
       for (int i = 0; i <= cells[0]; ++i)
-        // (i * size) / n, in this order: exact at both ends, and a mesh of twice the cells has these very nodes.
-        mesh.nodes.emplace_back(i * size[0] / cells[0], j * size[1] / cells[1], k * size[2] / cells[2]);
+        mesh.nodes.emplace_back(part_of(size[0], i, cells[0]), part_of(size[1], j, cells[1]),
+                                part_of(size[2], k, cells[2]));
   const auto node_at = [&](const Cell& at) {
     return NodeId((at[2] * (cells[1] + 1) + at[1]) * (cells[0] + 1) + at[0]);
   };
