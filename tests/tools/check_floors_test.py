@@ -17,7 +17,8 @@ ROOMS = {
     "linalg": {"floor": 1},
     "response": {"floor": 7, "planned": True},
     "haptics": {"floor": 8, "only": ["base", "response/snapshot.h"]},
-    "tests": {"floor": 11},
+    "tests/support": {"floor": 11},
+    "tests": {"floor": 11, "may_include": ["tests/support"]},
 }
 
 FILES = {
@@ -78,6 +79,9 @@ class CheckFloors(unittest.TestCase):
     def test_exception_holds_in_one_direction_only(self):
         files = {"src/mesh/io/vtu.h": "", "src/mesh/tet_mesh.h": '#include "mesh/io/vtu.h"\n'}
         self.assert_one(self.problems(files), "src/mesh/tet_mesh.h:1:", "crosses", "mesh/io")
+
+    def test_room_beside_src_opens_to_whom_it_says(self):
+        self.assert_one(self.problems({"tests/support/near.h": '#include "tests/mesh/a.h"\n', "tests/mesh/a.h": ""}), "crosses")
 
     def test_nothing_includes_the_tests(self):
         self.assert_one(self.problems({"src/mesh/a.cpp": '#include "tests/support/near.h"\n'}), "climbs")
