@@ -81,7 +81,7 @@ const ElementKind& element_kind(std::int64_t type, const Cursor& cursor) {
 
 void check_kind(const ElementKind& kind, std::int64_t element, const Cursor& cursor) {
   if (kind.dimension < 3 || kind.type == kTetrahedron) return;
-  cursor.refuse(fmt::format("element {} belongs to the {}", element, kind.name),
+  cursor.refuse(fmt::format("element {}: {} are not read", element, kind.name),
                 kind.nodes == 4 || std::string_view(kind.name).find("tetra") != std::string_view::npos
                     ? "mesh with elements of first order: gmsh -order 1"
                     : "mesh the volume with linear tetrahedra");
