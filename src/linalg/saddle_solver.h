@@ -25,10 +25,10 @@ enum class LinearOutcome { ok, singular, indefinite, not_converged, not_supporte
 
 struct LinearReport {
   LinearOutcome outcome = LinearOutcome::ok;
-  int iterations = 0;                        ///< 0 for direct
-  double relative_residual = 0.0;            ///< |K x - b| / |b|, measured, not estimated
-  std::optional<int> negative_pivots;        ///< beyond the m of a stable saddle point; empty where it cannot be known
-  std::string message;                       ///< one line: what happened and what would help; empty when ok
+  int iterations = 0;                  ///< 0 for direct
+  double relative_residual = 0.0;      ///< |K x - b| / |b|, measured, not estimated
+  std::optional<int> negative_pivots;  ///< beyond the m of a stable saddle point; empty where it cannot be known
+  std::string message;                 ///< one line: what happened and what would help; empty when ok
   [[nodiscard]] bool ok() const { return outcome == LinearOutcome::ok; }
 };
 
@@ -52,6 +52,7 @@ class SaddleSolver {
 };
 
 /// `name` one of direct, cg, minres (checked by the scene). The preconditioner blocks are read by minres alone.
-[[nodiscard]] std::unique_ptr<SaddleSolver> make_saddle_solver(std::string_view name, const BlockPreconditioner* blocks);
+[[nodiscard]] std::unique_ptr<SaddleSolver> make_saddle_solver(std::string_view name,
+                                                               const BlockPreconditioner* blocks);
 
 }  // namespace rhexis::linalg
