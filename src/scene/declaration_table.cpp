@@ -1,5 +1,6 @@
 #include <string_view>
 
+#include "mesh/body_request.h"
 #include "model/make_model.h"
 #include "scene/declaration.h"
 #include "scene/units.h"
@@ -59,7 +60,7 @@ Section mesh() {
            .doc = "Of a generated body, which fills the box from the origin to `size`."},
           {.name = "nodes",
            .kind = Kind::integer,
-           .range = within(4, 5e6),
+           .range = within(4, mesh::kMaxGeneratedNodes),
            .doc = "About how many nodes a generated body gets (within 2%)."},
           {.name = "radius",
            .kind = Kind::number,

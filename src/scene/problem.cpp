@@ -1,0 +1,91 @@
+#include "scene/problem.h"
+
+#include <algorithm>
+
+#include "mesh/quality.h"
+#include "model/stabilisation.h"
+#include "scene/body.h"
+#include "scene/supports.h"
+
+namespace rhexis::scene {
+namespace {
+
+/// The stabilisation smooths lambda over a length; above this fraction of the body's thickness it smooths what is real.
+constexpr double kMostSmoothing = 0.25;
+
+model::ModelSettings choose_settings(const Scene& scene, const mesh::TetMesh& mesh, Problem& problem) {
+  model::ModelSettings settings{.kind = scene.model.kind,
+                                .elastic = scene.material.elastic,
+                                .law = scene.material.law,
+                                .beta = 0.0,
+                                .initial_lambda = scene.model.initial_lambda,
+                                .corotated_tangent = scene.model.corotated_tangent};
+  if (settings.kind != model::ModelKind::hyperelastic) return settings;
+  settings.beta = scene.model.beta ? *scene.model.beta : model::auto_beta(settings.law);
+  if (!scene.model.beta)
+    problem.notes.push_back(fmt::format("beta = {:.4g}, chosen from the material and the mesh", settings.beta));
+  if (settings.beta > 0.0) {
+    const double reach = model::smoothing_length(mesh, settings.law, settings.beta);
+    const double thickness = mesh::thickness(mesh);
+    if (reach > kMostSmoothing * thickness)
+      problem.warnings.push_back(fmt::format(
+          "{}: beta = {:.4g} smooths lambda over {:.3g} m, more than a quarter of the body's thickness of {:.3g} m "
+          "(a smaller beta or a finer mesh would resolve more)",
+          scene.file, settings.beta, reach, thickness));
+  }
+  return settings;
+}
+
+Expected<model::Loading> make_loading(const Scene& scene, const Body& body, const model::DisplacementSpace& space) {
+  model::Loading loading;
+  Expected<std::vector<model::PrescribedDof>> supports = make_supports(scene, body, space);
+  if (!supports) return fail(std::move(supports.error()));
+  loading.supports = std::move(*supports);
+
+  loading.dead_force = VectorX::Zero(static_cast<Eigen::Index>(space.dof_count()));
+  const Vec3 weight = scene.material.density * scene.gravity;
+  if (!weight.isZero(0.0)) model::add_body_force(body.mesh, space, weight, loading.dead_force);
+  for (const TractionSettings& traction : scene.tractions) {
+    const Expected<std::vector<mesh::TetFace>> faces = faces_of(body, traction.faces);
+    if (!faces) return fail(faces.error());
+    model::add_traction(body.mesh, space, *faces, traction.force, loading.dead_force);
+  }
+  for (const PressureSettings& pressure : scene.pressures) {
+    const Expected<std::vector<mesh::TetFace>> faces = faces_of(body, pressure.faces);
+    if (!faces) return fail(faces.error());
+    loading.pressures.push_back(
+        model::make_follower_pressure(body.mesh, space, *faces, pressure.value, loading.supports));
+  }
+  return loading;
+}
+
+bool acts(const model::Loading& loading) {
+  const auto moves = [](const model::PrescribedDof& dof) { return dof.value != 0.0; };
+  const auto presses = [](const model::FollowerPressure& load) { return load.pressure != 0.0; };
+  return !loading.dead_force.isZero(0.0) || std::any_of(loading.supports.begin(), loading.supports.end(), moves) ||
+         std::any_of(loading.pressures.begin(), loading.pressures.end(), presses);
+}
+
+}  // namespace
+
+Expected<Problem> build_problem(const Scene& scene) {
+  Problem problem;
+  problem.title = scene.title.empty() ? std::filesystem::path(scene.file).stem().string() : scene.title;
+  problem.options = scene.solver.options;
+  problem.warnings = scene.warnings;
+  problem.notes = scene.notes;
+
+  Expected<Body> body = make_body(scene, problem.notes);
+  if (!body) return fail(std::move(body.error()));
+  problem.settings = choose_settings(scene, body->mesh, problem);
+  problem.model = model::make_model(body->mesh, problem.settings);
+  Expected<model::Loading> loading = make_loading(scene, *body, problem.model->space());
+  if (!loading) return fail(std::move(loading.error()));
+  problem.loading = std::move(*loading);
+  if (!acts(problem.loading) && scene.pulls.empty())
+    problem.warnings.push_back(scene.file + ": nothing acts on the body: no load, and no support moves");
+  problem.mesh = std::move(body->mesh);
+  return problem;
+}
+
+}  // namespace rhexis::scene
