@@ -46,8 +46,9 @@ std::optional<Lattice> plan(const Vec3& size, int nodes) {
   const auto length = [&](std::size_t axis) { return size[static_cast<int>(axis)]; };
   std::optional<Lattice> best;
   double best_aspect = kMaxCellAspect;
-  // nc >= na / 2, because direction c is not shorter and its cells are at most twice as long, and na * nc <= nodes.
-  for (std::int64_t na = 1; na * na <= 2 * std::int64_t{nodes}; ++na) {
+  // Cells in direction c are at most twice as long as in direction a, which bounds nc from below; and na * nc <= nodes.
+  const double least_nc = length(c) / length(a) / kMaxCellAspect;
+  for (std::int64_t na = 1; static_cast<double>(na * na) * least_nc <= nodes; ++na) {
     const double side = length(a) / static_cast<double>(na);
     const double nb_most = static_cast<double>(nodes) / static_cast<double>(na + 1);
     const double nb_from = std::max(1.0, std::floor(length(b) / side / kMaxCellAspect));

@@ -9,11 +9,12 @@
 namespace rhexis::mesh {
 namespace {
 
+constexpr int kFewest = 4;  ///< nodes of a body, at the very least
+
 /// Goes from `nodes` up or down, one by one at first, then in steps of 1%; a count found by such a step is pulled back
 /// by bisection towards the last one that could not be had. 0 when there is none.
 int nearest_count(int nodes, int direction, const std::function<bool(int)>& can_have) {
   constexpr int kOneByOne = 50;
-  constexpr int kFewest = 4;
   int tried = 0;
   int missed = nodes;
   int found = nodes;
@@ -42,7 +43,7 @@ Expected<void> check_box(const Vec3& size) {
 }
 
 tl::unexpected<Error> no_such_count(std::string_view body, int nodes, const std::function<bool(int)>& can_have) {
-  const int start = std::clamp(nodes, 0, kMaxGeneratedNodes + 1);
+  const int start = std::clamp(nodes, kFewest - 1, kMaxGeneratedNodes + 1);
   const int below = nearest_count(start, -1, can_have);
   const int above = nearest_count(start, +1, can_have);
   std::string remedy;
