@@ -49,7 +49,8 @@ Report solve_equilibrium(const model::Model& model, const model::Loading& loadin
     report.cuts.push_back(step);
     if (++cuts_in_a_row > options.max_cuts) {
       report.outcome = step.outcome;
-      report.why = fmt::format("at load fraction {:.4g} of the whole: {}; {} halvings of the step did not help", target, step.message, options.max_cuts);
+      report.why = fmt::format("at load fraction {:.4g} of the whole: {}; {} halvings of the step did not help", target,
+                               step.message, options.max_cuts);
       break;
     }
     step_size = 0.5 * (target - report.load);

@@ -16,37 +16,39 @@ namespace rhexis::solver {
 
 /// How a run, or one step of it, ended.
 enum class Outcome {
-  converged,        ///< both residuals below the tolerance
-  stagnated,        ///< not below, but at the rounding of the arithmetic: counts as converged, and is said
+  converged,  ///< both residuals below the tolerance
+  stagnated,  ///< not below, but at the rounding of the arithmetic: counts as converged, and is said
   too_many_iterations,
-  inverted,         ///< a tet of a law that has no answer there reached J <= 0
-  not_finite,       ///< a force became NaN or infinite
-  linear_solver,    ///< the linear system could not be solved; the message says why
+  inverted,       ///< a tet of a law that has no answer there reached J <= 0
+  not_finite,     ///< a force became NaN or infinite
+  linear_solver,  ///< the linear system could not be solved; the message says why
 };
-[[nodiscard]] constexpr bool is_success(Outcome outcome) { return outcome == Outcome::converged || outcome == Outcome::stagnated; }
+[[nodiscard]] constexpr bool is_success(Outcome outcome) {
+  return outcome == Outcome::converged || outcome == Outcome::stagnated;
+}
 
 struct StepReport {
-  double load = 0.0;                  ///< fraction of the whole load at the end of this step
+  double load = 0.0;  ///< fraction of the whole load at the end of this step
   Outcome outcome = Outcome::converged;
-  int iterations = 0;                 ///< Newton iterations
-  int linear_iterations = 0;          ///< of all of them, iterative solvers
-  double residual_u = 0.0;            ///< relative, at the end
-  double residual_lambda = 0.0;       ///< relative, at the end
-  std::string message;                ///< one line when something is to be said
+  int iterations = 0;            ///< Newton iterations
+  int linear_iterations = 0;     ///< of all of them, iterative solvers
+  double residual_u = 0.0;       ///< relative, at the end
+  double residual_lambda = 0.0;  ///< relative, at the end
+  std::string message;           ///< one line when something is to be said
 };
 
 struct Report {
   Outcome outcome = Outcome::converged;
-  std::string why;                          ///< empty when converged
-  double load = 0.0;                        ///< fraction reached by the state handed back
-  std::vector<StepReport> steps;            ///< accepted steps, in order
-  std::vector<StepReport> cuts;             ///< steps that failed and were tried again smaller
-  double residual_u = 0.0;                  ///< of the last accepted step, relative
+  std::string why;                ///< empty when converged
+  double load = 0.0;              ///< fraction reached by the state handed back
+  std::vector<StepReport> steps;  ///< accepted steps, in order
+  std::vector<StepReport> cuts;   ///< steps that failed and were tried again smaller
+  double residual_u = 0.0;        ///< of the last accepted step, relative
   double residual_lambda = 0.0;
-  std::optional<int> negative_pivots;       ///< of the last tangent, beyond the lambdas; empty where the solver cannot know
-  VectorX reaction;                         ///< N, 3 per displacement node: force of the supports on the body
-  double build_seconds = 0.0;               ///< tangent and residual
-  double solve_seconds = 0.0;               ///< factorisations and linear solves
+  std::optional<int> negative_pivots;  ///< of the last tangent, beyond the lambdas; empty where the solver cannot know
+  VectorX reaction;                    ///< N, 3 per displacement node: force of the supports on the body
+  double build_seconds = 0.0;          ///< tangent and residual
+  double solve_seconds = 0.0;          ///< factorisations and linear solves
   std::size_t linear_memory_bytes = 0;
   [[nodiscard]] bool converged() const { return is_success(outcome); }
 };

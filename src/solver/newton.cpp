@@ -17,7 +17,9 @@ linalg::FreeDofs free_dofs_of(const model::Model& model, const model::Loading& l
   return linalg::make_free_dofs(held);
 }
 
-double ratio(double value, double scale) { return value == 0.0 ? 0.0 : value / std::max(scale, std::numeric_limits<double>::min()); }
+double ratio(double value, double scale) {
+  return value == 0.0 ? 0.0 : value / std::max(scale, std::numeric_limits<double>::min());
+}
 
 std::string tet_name(TetId tet) { return tet.valid() ? fmt::format("tet {}", tet.value()) : std::string("a tet"); }
 
@@ -35,6 +37,9 @@ Newton::Newton(const model::Model& model, const model::Loading& loading, const O
   for (VectorX* vector : {&residual_.u, &external_, &internal_, &held_, &du_, &rhs_u_}) vector->setZero(dofs);
   for (VectorX* vector : {&residual_.lambda, &dlambda_, &rhs_lambda_}) vector->setZero(pressures);
   trial_ = {VectorX::Zero(dofs), VectorX::Zero(pressures)};
+  double size = 0.0;
+  for (const Vec3& x : model.space().nodes) size = std::max(size, x.lpNorm<Eigen::Infinity>());
+  smallest_move_ = kRoundingMove * size;
 }
 
 model::Evaluation Newton::evaluate(double t, const model::State& state) {
@@ -42,7 +47,8 @@ model::Evaluation Newton::evaluate(double t, const model::State& state) {
   const model::Evaluation evaluation = model_.residual(state, *scratch_, residual_);
   internal_ = residual_.u;
   external_ = t * loading_.dead_force;
-  for (const model::FollowerPressure& load : loading_.pressures) model::add_pressure_force(load, model_.space(), state.u, t, external_);
+  for (const model::FollowerPressure& load : loading_.pressures)
+    model::add_pressure_force(load, model_.space(), state.u, t, external_);
   residual_.u -= external_;
   return evaluation;
 }
@@ -62,11 +68,13 @@ void Newton::build_tangent(double t, const model::State& state) {
   const ScopedTimer timer(build_seconds_);
   model_.tangent(state, *scratch_, tangent_);
   tangent_.skew.reset();
-  for (const model::FollowerPressure& load : loading_.pressures) model::subtract_pressure_stiffness(load, model_.space(), state.u, t, tangent_);
+  for (const model::FollowerPressure& load : loading_.pressures)
+    model::subtract_pressure_stiffness(load, model_.space(), state.u, t, tangent_);
 }
 
 /// K (du, dlambda) = -(R_u, R_lambda) with du = held_increment on the held dofs.
-linalg::LinearReport Newton::find_direction(double t, const model::State& state, const VectorX& held_increment, double tolerance) {
+linalg::LinearReport Newton::find_direction(double t, const model::State& state, const VectorX& held_increment,
+                                            double tolerance) {
   const bool reuse = tangent_is_constant_ && factored_;
   if (!reuse) build_tangent(t, state);
   const ScopedTimer timer(solve_seconds_);
@@ -89,7 +97,8 @@ linalg::LinearReport Newton::find_direction(double t, const model::State& state,
 StepReport Newton::solve(double t, model::State& state) {
   StepReport step;
   step.load = t;
-  for (const model::PrescribedDof& support : loading_.supports) held_[support.dof] = t * support.value - state.u[support.dof];
+  for (const model::PrescribedDof& support : loading_.supports)
+    held_[support.dof] = t * support.value - state.u[support.dof];
   bool held_in_place = held_.isZero(0.0);
 
   model::Evaluation evaluation = evaluate(t, state);
@@ -107,7 +116,8 @@ StepReport Newton::solve(double t, model::State& state) {
     if (held_in_place && now.u <= options_.tolerance && now.lambda <= options_.tolerance) return step;
     if (step.iterations == options_.max_iterations) {
       step.outcome = Outcome::too_many_iterations;
-      step.message = fmt::format("no equilibrium after {} iterations, relative residual {:.1e}", step.iterations, std::max(now.u, now.lambda));
+      step.message = fmt::format("no equilibrium after {} iterations, relative residual {:.1e}", step.iterations,
+                                 std::max(now.u, now.lambda));
       return step;
     }
 
@@ -129,21 +139,27 @@ StepReport Newton::solve(double t, model::State& state) {
       evaluation = evaluate(t, trial_);
       next = norms(trial_);
       const bool admissible = evaluation.finite && (model_.allows_inversion() || evaluation.inverted_tets == 0);
-      const bool small_enough = step.iterations == 0 || !held_in_place || next.merit <= kResidualGrowth * kResidualGrowth * now.merit || next.u <= options_.tolerance;
+      const bool small_enough = step.iterations == 0 || !held_in_place ||
+                                next.merit <= kResidualGrowth * kResidualGrowth * now.merit ||
+                                next.u <= options_.tolerance;
       if (admissible && (small_enough || halving == kMaxHalvings)) break;
       if (halving == kMaxHalvings) {
         step.outcome = evaluation.finite ? Outcome::inverted : Outcome::not_finite;
-        step.message = evaluation.finite ? fmt::format("{} tets turn inside out, {} first (J = {:.3g})", evaluation.inverted_tets, tet_name(evaluation.worst_tet), evaluation.min_J)
-                                         : fmt::format("the force of {} is not finite", tet_name(evaluation.worst_tet));
+        step.message = evaluation.finite
+                           ? fmt::format("{} tets turn inside out, {} first (J = {:.3g})", evaluation.inverted_tets,
+                                         tet_name(evaluation.worst_tet), evaluation.min_J)
+                           : fmt::format("the force of {} is not finite", tet_name(evaluation.worst_tet));
         return step;
       }
       alpha *= 0.5;
     }
 
     // Rounding: the correction no longer moves the state and the residual no longer falls.
-    const double moved = std::max(ratio(alpha * du_.norm(), trial_.u.norm()), ratio(alpha * dlambda_.norm(), trial_.lambda.norm()));
+    const double moved =
+        std::max(ratio(alpha * du_.norm(), trial_.u.norm()), ratio(alpha * dlambda_.norm(), trial_.lambda.norm()));
+    const bool at_rounding = moved <= kRoundingCorrection || alpha * du_.lpNorm<Eigen::Infinity>() <= smallest_move_;
     const bool falls = next.u < 0.5 * now.u || next.lambda < 0.5 * now.lambda;
-    idle = moved <= kRoundingCorrection && !falls ? idle + 1 : 0;
+    idle = at_rounding && !falls ? idle + 1 : 0;
 
     // Eisenstat and Walker's second choice keeps iterative solvers from solving a wrong model exactly.
     const double reduction = ratio(std::max(next.u, next.lambda), std::max(now.u, now.lambda));
@@ -162,7 +178,8 @@ StepReport Newton::solve(double t, model::State& state) {
       step.residual_u = now.u;
       step.residual_lambda = now.lambda;
       step.outcome = Outcome::stagnated;
-      step.message = fmt::format("at rounding: relative residual {:.1e}, above the tolerance {:.1e}", std::max(now.u, now.lambda), options_.tolerance);
+      step.message = fmt::format("at rounding: relative residual {:.1e}, above the tolerance {:.1e}",
+                                 std::max(now.u, now.lambda), options_.tolerance);
       return step;
     }
   }

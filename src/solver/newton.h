@@ -15,9 +15,11 @@
 namespace rhexis::solver {
 
 /// Tolerances of the iteration that are ours, not the user's.
-/// A correction below this fraction of the unknowns no longer moves the state: the residual has reached rounding when it
-/// does not fall either. No unit.
+/// A correction below this fraction of the unknowns no longer moves the state: the residual has reached rounding when
+/// it does not fall either. No unit.
 inline constexpr double kRoundingCorrection = 1e-11;
+/// Nor does one below this fraction of the largest coordinate: x = X + u cannot hold it. A few units in the last place.
+inline constexpr double kRoundingMove = 1e-15;
 /// The residual may grow by this factor in a full Newton step before the step is shortened: in bending, the first step
 /// turns into stretch, whose residual is large and vanishes in the next.
 inline constexpr double kResidualGrowth = 4.0;
@@ -50,7 +52,8 @@ class Newton {
 
   model::Evaluation evaluate(double t, const model::State& state);
   [[nodiscard]] Norms norms(const model::State& state) const;
-  linalg::LinearReport find_direction(double t, const model::State& state, const VectorX& held_increment, double tolerance);
+  linalg::LinearReport find_direction(double t, const model::State& state, const VectorX& held_increment,
+                                      double tolerance);
   void build_tangent(double t, const model::State& state);
 
   const model::Model& model_;
@@ -63,12 +66,13 @@ class Newton {
   linalg::SaddleMatrix tangent_;
   bool tangent_is_constant_ = false;  ///< a linear model without follower pressure is factored once
   bool factored_ = false;
+  double smallest_move_ = 0.0;  ///< m, kRoundingMove of the body
 
-  model::Residual residual_;   ///< internal minus external force, and R_lambda
-  VectorX external_;           ///< N, at the last evaluation
-  VectorX internal_;           ///< N, at the last evaluation
-  VectorX held_;               ///< increments of the held dofs still to be made, m
-  VectorX du_, dlambda_;       ///< the Newton direction
+  model::Residual residual_;  ///< internal minus external force, and R_lambda
+  VectorX external_;          ///< N, at the last evaluation
+  VectorX internal_;          ///< N, at the last evaluation
+  VectorX held_;              ///< increments of the held dofs still to be made, m
+  VectorX du_, dlambda_;      ///< the Newton direction
   VectorX rhs_u_, rhs_lambda_;
   model::State trial_;
   std::optional<int> negative_pivots_;

@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(Pulls, ClosedForm,
                                          Pull{"PshBeta100Stretch1_5", model::ModelKind::hyperelastic, 100.0, 1.5},
                                          Pull{"PshBeta100Squeezed", model::ModelKind::hyperelastic, 100.0, 0.7},
                                          Pull{"TaylorHoodStretch1_3", model::ModelKind::taylor_hood, 0.0, 1.3}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& tested) { return tested.param.name; });
 
 }  // namespace
 }  // namespace rhexis

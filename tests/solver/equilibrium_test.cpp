@@ -60,7 +60,8 @@ TEST(Equilibrium, NoLoadIsConvergedAtOnce) {
   model::State state = body->initial_state();
   const solver::Report report = solver::solve_equilibrium(*body, loading, {.steps = 1}, state);
   EXPECT_TRUE(report.converged());
-  EXPECT_EQ(state.u.norm(), 0.0);
+  // F = I is not exact in floating point where X is not; the body may move in the last place of its coordinates.
+  EXPECT_LT(state.u.norm(), 1e-15);
 }
 
 TEST(Equilibrium, InitialLambdaDoesNotChangeTheAnswer) {

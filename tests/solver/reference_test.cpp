@@ -206,7 +206,7 @@ std::vector<Case> vessel_cases() {
   return cases;
 }
 
-const auto name_of_case = [](const testing::TestParamInfo<Case>& info) { return info.param.name; };
+const auto name_of_case = [](const testing::TestParamInfo<Case>& tested) { return tested.param.name; };
 INSTANTIATE_TEST_SUITE_P(Models, Patch, testing::ValuesIn(patch_cases()), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Models, Bar, testing::ValuesIn(bar_cases()), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Models, Vessel, testing::ValuesIn(vessel_cases()), name_of_case);

@@ -44,7 +44,8 @@ inline mesh::TetMesh read_reference_mesh(const std::filesystem::path& stem) {
     for (std::size_t k = 0; k < 4; ++k) tet[k] = NodeId(static_cast<std::int32_t>(tets[i + k]));
     mesh.tets.push_back(tet);
   }
-  for (const auto& [name, ids] : read_json(stem.string() + "_sets.json")["nodesets"].items()) {
+  const nlohmann::json sets = read_json(stem.string() + "_sets.json");
+  for (const auto& [name, ids] : sets["nodesets"].items()) {
     mesh::NodeSet set{name, {}};
     for (const auto& id : ids) set.nodes.emplace_back(id.get<std::int32_t>());
     mesh.node_sets.push_back(set);
