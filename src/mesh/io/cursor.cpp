@@ -10,11 +10,13 @@ constexpr bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\t' || c
 }  // namespace
 
 void Cursor::skip_blanks(bool over_lines) {
+  const int line_before = line_;
   for (; position_ < bytes_.size() && is_blank(bytes_[position_]); ++position_) {
     if (bytes_[position_] != '\n') continue;
     if (!over_lines) return;
     ++line_;
   }
+  if (position_ == bytes_.size()) line_ = line_before;  // what is missing at the end is missing behind the last word
 }
 
 bool Cursor::at_end() {
@@ -74,8 +76,11 @@ double Cursor::number(std::string_view wanted) {
   return value;
 }
 
-void Cursor::begin_record() {
+void Cursor::begin_record(std::string_view what) {
   skip_blanks(true);
+  if (position_ < bytes_.size() && bytes_[position_] == '$') {
+    refuse(fmt::format("{} stands where {} should be", in_quotes(peek()), what), "is the count right?");
+  }
   in_record_ = true;
 }
 

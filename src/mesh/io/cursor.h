@@ -67,8 +67,8 @@ class Cursor {
   double number(std::string_view wanted);
 
   /// Words until end_record() have to stand on one line: a line that is too short or too long is named itself, not the
-  /// one after it.
-  void begin_record();
+  /// one after it. Gmsh's `$` closes a section, so it cannot begin a record.
+  void begin_record(std::string_view what);
   void end_record(std::string_view what);
 
   /// The next `count` bytes as they are.

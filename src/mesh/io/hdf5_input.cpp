@@ -108,7 +108,8 @@ std::string Hdf5Input::text_attribute(hid_t group, const char* name) const {
     return out;
   }
   const std::size_t size = H5Tget_size(type);
-  if (size == 0 || size > kLongestText) refuse(fmt::format("attribute {} has {} letters", in_quotes(name), size));
+  if (size == 0 || size > kLongestText)
+    refuse(fmt::format("attribute {} has {} letters", in_quotes(name), size), "256 at most");
   std::string out(size, '\0');
   if (H5Aread(attribute, type, out.data()) < 0) refuse(fmt::format("attribute {} cannot be read", in_quotes(name)));
   out.resize(strnlen(out.data(), size));

@@ -94,7 +94,7 @@ void read_msh2_nodes(MshInput& in) {
   const std::int64_t count = read_count(in, "nodes", kShortestNode, kBinaryNode);
   in.mesh.nodes.reserve(static_cast<std::size_t>(count));
   for (std::int64_t i = 0; i < count; ++i) {
-    in.begin_record();
+    in.begin_record("a node");
     const std::int64_t tag = in.integer("the number of a node");
     in.tags.add(tag, in.cursor.line());
     in.read_position(tag);
@@ -108,7 +108,7 @@ void read_msh2_elements(MshInput& in) {
   ElementReader reader(in);
   std::int64_t done = 0;
   while (done < count) {
-    in.begin_record();
+    in.begin_record("an element");
     if (in.binary) {
       // Runs of elements of one type share a header.
       const ElementKind& kind = element_kind(in.integer("an element type"), in.cursor);

@@ -25,12 +25,12 @@ int read_dimension(MshInput& in) {
 MshEntities read_msh4_entities(MshInput& in) {
   MshEntities entities;
   std::int64_t counts[4];
-  in.begin_record();
+  in.begin_record("the numbers of entities");
   for (std::int64_t& count : counts) count = read_count(in, "entities", 10, 36);
   in.end_record("the numbers of entities");
   for (int dimension = 0; dimension < 4; ++dimension) {
     for (std::int64_t i = 0; i < counts[dimension]; ++i) {
-      in.begin_record();
+      in.begin_record("an entity");
       const std::int64_t tag = in.integer("the tag of an entity");
       for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) (void)in.real("a bound of the entity");
       std::vector<std::int64_t>& physicals = entities[{dimension, tag}];
@@ -50,7 +50,7 @@ MshEntities read_msh4_entities(MshInput& in) {
 }
 
 void read_msh4_nodes(MshInput& in) {
-  in.begin_record();
+  in.begin_record("the head of the nodes");
   const std::int64_t blocks = read_count(in, "node blocks", 8, 20);
   const std::int64_t count = read_count(in, "nodes", 8, 32);
   for (const char* wanted : {"the smallest node tag", "the largest node tag"}) (void)in.size(wanted);
@@ -58,7 +58,7 @@ void read_msh4_nodes(MshInput& in) {
   in.mesh.nodes.reserve(static_cast<std::size_t>(count));
   std::vector<std::int64_t> block_tags;
   for (std::int64_t block = 0; block < blocks; ++block) {
-    in.begin_record();
+    in.begin_record("the head of a node block");
     const int dimension = read_dimension(in);
     (void)in.integer("the tag of an entity");
     const bool parametric = in.integer("whether nodes are parametric") != 0;
@@ -69,13 +69,13 @@ void read_msh4_nodes(MshInput& in) {
     }
     block_tags.clear();
     for (std::int64_t i = 0; i < here; ++i) {
-      in.begin_record();
+      in.begin_record("the tag of a node");
       block_tags.push_back(in.size("the tag of a node"));
       in.tags.add(block_tags.back(), in.cursor.line());
       in.end_record("the tag of a node");
     }
     for (const std::int64_t tag : block_tags) {
-      in.begin_record();
+      in.begin_record("a node");
       in.read_position(tag);
       for (int k = 0; parametric && k < dimension; ++k) (void)in.real("a parameter of the node");
       in.end_record("a node");
@@ -88,7 +88,7 @@ void read_msh4_nodes(MshInput& in) {
 }
 
 void read_msh4_elements(MshInput& in, const MshEntities& entities) {
-  in.begin_record();
+  in.begin_record("the head of the elements");
   const std::int64_t blocks = read_count(in, "element blocks", 8, 20);
   const std::int64_t count = read_count(in, "elements", 4, 16);
   for (const char* wanted : {"the smallest element tag", "the largest element tag"}) (void)in.size(wanted);
@@ -97,7 +97,7 @@ void read_msh4_elements(MshInput& in, const MshEntities& entities) {
   std::vector<NodeId> nodes;
   std::int64_t done = 0;
   for (std::int64_t block = 0; block < blocks; ++block) {
-    in.begin_record();
+    in.begin_record("the head of an element block");
     const int dimension = read_dimension(in);
     const std::int64_t entity = in.integer("the tag of an entity");
     const ElementKind& kind = element_kind(in.integer("an element type"), in.cursor);
@@ -110,7 +110,7 @@ void read_msh4_elements(MshInput& in, const MshEntities& entities) {
     const auto at = entities.find({dimension, entity});
     const std::vector<std::int64_t>& physicals = at != entities.end() ? at->second : no_physicals;
     for (std::int64_t i = 0; i < here; ++i) {
-      in.begin_record();
+      in.begin_record("an element");
       const std::int64_t number = in.size("the tag of an element");
       check_kind(kind, number, in.cursor);
       nodes.clear();

@@ -101,8 +101,8 @@ double MshInput::real(std::string_view wanted) {
   return binary ? cursor.binary_value<double>(swap, wanted) : cursor.number(wanted);
 }
 
-void MshInput::begin_record() {
-  if (!binary) cursor.begin_record();
+void MshInput::begin_record(std::string_view what) {
+  if (!binary) cursor.begin_record(what);
 }
 
 void MshInput::end_record(std::string_view what) {

@@ -49,7 +49,7 @@ struct MshInput {
   std::int64_t size(std::string_view wanted);
   double real(std::string_view wanted);
   /// Lines matter in text alone.
-  void begin_record();
+  void begin_record(std::string_view what);
   void end_record(std::string_view what);
 
   /// Reads three coordinates; refuses what is not finite. Positions go to `mesh.nodes`.

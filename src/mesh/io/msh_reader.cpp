@@ -15,7 +15,7 @@ Version read_format(MshInput& in) {
     cursor.refuse(fmt::format("it starts with {}, a Gmsh file with '$MeshFormat'", in_quotes(first)),
                   first == "$NOD" ? "MSH 1 is not read, save as 4.1 or 2.2" : "");
   }
-  cursor.begin_record();
+  cursor.begin_record("the format");
   const std::string_view version = cursor.word("the version");
   const std::int64_t type = cursor.integer("the file type");
   const std::int64_t data_size = cursor.integer("the data size");
@@ -24,7 +24,7 @@ Version read_format(MshInput& in) {
   if (!msh2 && version != "4.1")
     cursor.refuse(fmt::format("MSH version {} is not read", in_quotes(version)), "save as 4.1 or 2.2");
   if (type != 0 && type != 1) cursor.refuse(fmt::format("file type {} is not known", type), "0 for text, 1 for binary");
-  if (data_size != 8) cursor.refuse(fmt::format("a data size of {} is not read", data_size), "8");
+  if (data_size != 8) cursor.refuse(fmt::format("a data size of {} is not read", data_size), "it should be 8");
   in.binary = type == 1;
   if (in.binary) {
     cursor.rest_of_line();
@@ -41,16 +41,16 @@ void read_physical_names(MshInput& in) {
   const auto count = cursor.integer<std::uint32_t>("the number of physical names");
   cursor.check_room(count, 6, "physical names");
   for (std::uint32_t i = 0; i < count; ++i) {
-    cursor.begin_record();
+    cursor.begin_record("a physical name");
     const auto dimension = cursor.integer<int>("a dimension");
     const std::int64_t tag = cursor.integer("a physical tag");
+    const int line = cursor.line();
     // A name may hold blanks: it is what stands between the first and the last quote of the line.
     const std::string_view rest = cursor.rest_of_line();
     if (rest.size() < 2 || rest.front() != '"' || rest.back() != '"') {
-      refuse(fmt::format("a name in quotes should follow, not {}", in_quotes(rest)), "", cursor.line() - 1);
+      refuse(fmt::format("a name in quotes should follow, not {}", in_quotes(rest)), "", line);
     }
-    if (dimension < 0 || dimension > 3)
-      refuse(fmt::format("a group of dimension {}", dimension), "0 to 3", cursor.line() - 1);
+    if (dimension < 0 || dimension > 3) refuse(fmt::format("a group of dimension {}", dimension), "0 to 3", line);
     in.group(dimension, tag, std::string(rest.substr(1, rest.size() - 2)));
   }
 }

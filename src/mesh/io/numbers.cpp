@@ -68,11 +68,12 @@ Numbers<T> read_text(Cursor& cursor, std::optional<std::size_t> count, std::stri
   cursor.at_end();  // so that the line is that of the first value
   Numbers<T> out{{}, cursor.rest(), cursor.line()};
   if (count) out.values.reserve(*count);
+  const std::string wanted = fmt::format("a value of {}", name);
   while (count ? out.values.size() < *count : !cursor.at_end()) {
     if constexpr (std::is_floating_point_v<T>) {
-      out.values.push_back(cursor.number(name));
+      out.values.push_back(cursor.number(wanted));
     } else {
-      out.values.push_back(cursor.integer<T>(name));
+      out.values.push_back(cursor.integer<T>(wanted));
     }
   }
   return out;

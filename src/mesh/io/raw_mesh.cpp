@@ -50,6 +50,7 @@ std::vector<RawGroup> merge_by_name(std::vector<RawGroup> groups, std::vector<st
   std::vector<RawGroup> merged;
   std::map<std::string, std::size_t> place;
   for (RawGroup& group : groups) {
+    group.name = printable(group.name);
     const auto [at, is_new] = place.emplace(group.name, merged.size());
     if (is_new) {
       merged.push_back(std::move(group));
@@ -136,6 +137,7 @@ MeshFile finish(RawMesh raw, const ReadOptions& options) {
   MeshFile out;
   out.notes = std::move(raw.notes);
   out.fields = std::move(raw.fields);
+  for (Field& field : out.fields) field.name = printable(field.name);
   out.mesh.nodes = std::move(raw.nodes);
   out.mesh.tets = std::move(raw.tets);
   for (std::size_t i = 0; i < out.mesh.nodes.size(); ++i) {

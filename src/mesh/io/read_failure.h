@@ -20,7 +20,9 @@ struct ReadFailure {
 /// Throws ReadFailure. `line` is 1-based, 0 when there is none to name.
 [[noreturn]] void refuse(std::string what, std::string remedy = {}, int line = 0);
 
-/// Text from a file, safe to print: in quotes, at most 40 characters, control characters as '?'.
+/// Text from a file as UTF-8 that can be printed: control characters, and what is no UTF-8, become '?'.
+[[nodiscard]] std::string printable(std::string_view text);
+/// The same in quotes, cut to 40 characters.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
 /// Returns read(), or the error that it threw, placed in `file`.

@@ -74,7 +74,7 @@ class VtkReader {
 
   MeshFile read(const ReadOptions& options) {
     read_head();
-    while (!cursor_.at_end()) read_section(lower(cursor_.word("a keyword")));
+    while (!cursor_.at_end()) read_section(cursor_.word("a keyword"));
     if (!cells_set_) cursor_.refuse("it holds no CELLS with CELL_TYPES", "it may be cut short");
     return finish(builder_.take(), options);
   }
@@ -92,7 +92,8 @@ class VtkReader {
     }
     cursor_.rest_of_line();  // the title
     const std::string format = lower(cursor_.word("ASCII or BINARY"));
-    if (format != "ascii" && format != "binary") cursor_.refuse(in_quotes(format) + " should be ASCII or BINARY");
+    if (format != "ascii" && format != "binary")
+      cursor_.refuse("ASCII or BINARY should stand here, not " + in_quotes(format));
     binary_ = format == "binary";
     if (lower(cursor_.word("DATASET")) != "dataset") cursor_.refuse("the line should say DATASET UNSTRUCTURED_GRID");
     if (const auto type = cursor_.word("the kind of data set"); lower(type) != "unstructured_grid") {
@@ -101,25 +102,25 @@ class VtkReader {
     }
   }
 
-  void read_section(const std::string& keyword) {
+  void read_section(std::string_view word) {
+    const std::string keyword = lower(word);
     if (keyword == "points") return read_points();
     if (keyword == "cells") return new_cells_ ? read_new_cells() : read_old_cells();
     if (keyword == "cell_types") return read_cell_types();
     if (keyword == "metadata") return skip_metadata();
     if (keyword == "field") return read_field_block();
-    if (keyword == "point_data" || keyword == "cell_data") {
-      const bool points = keyword == "point_data";
-      if (!cells_set_) cursor_.refuse("data stand before points and cells");
-      const std::size_t count = read_count("values");
-      centering_ = points ? Centering::point : Centering::cell;
-      entities_ = points ? builder_.point_count() : builder_.cell_count();
-      if (count != entities_) {
-        cursor_.refuse(fmt::format("data for {} {}, there are {}", count, points ? "points" : "cells", entities_));
-      }
-      return;
+    if (keyword == "point_data" || keyword == "cell_data") return start_data(keyword == "point_data");
+    if (!centering_ || !read_attribute(keyword)) cursor_.refuse("a keyword should stand here, not " + in_quotes(word));
+  }
+
+  void start_data(bool of_points) {
+    if (!cells_set_) cursor_.refuse("data stand before points and cells");
+    const std::size_t count = read_count("values");
+    centering_ = of_points ? Centering::point : Centering::cell;
+    entities_ = of_points ? builder_.point_count() : builder_.cell_count();
+    if (count != entities_) {
+      cursor_.refuse(fmt::format("data for {} {}, there are {}", count, of_points ? "points" : "cells", entities_));
     }
-    if (!centering_) cursor_.refuse("keyword " + in_quotes(keyword) + " is not known here");
-    read_attribute(keyword);
   }
 
   std::size_t read_count(std::string_view things) {
@@ -192,7 +193,7 @@ class VtkReader {
       if (lower(cursor_.word(keyword)) != lower(keyword))
         cursor_.refuse(fmt::format("{} should follow CELLS", keyword));
       const Scalar type = read_type();
-      if (is_float(type)) cursor_.refuse(fmt::format("{} are not whole numbers", keyword), "vtktypeint64");
+      if (is_float(type)) cursor_.refuse(fmt::format("{} does not hold whole numbers", keyword), "vtktypeint64");
       return read_array<std::int64_t>(count, type, keyword);
     };
     cells_.ends = read_part("OFFSETS", offsets);
@@ -208,7 +209,11 @@ class VtkReader {
   void read_cell_types() {
     if (cells_set_) cursor_.refuse("CELL_TYPES are there twice");
     if (!has_cells_) cursor_.refuse("CELL_TYPES stand before CELLS");
-    cells_.types = read_array<std::int64_t>(read_count("cell types"), Scalar::int32, "cell types");
+    const std::size_t count = read_count("cell types");
+    if (count != cells_.ends.values.size()) {
+      cursor_.refuse(fmt::format("{} cell types for {} cells", count, cells_.ends.values.size()));
+    }
+    cells_.types = read_array<std::int64_t>(count, Scalar::int32, "cell types");
     builder_.set_cells(cells_);
     cells_ = VtkCells{};
     cells_set_ = true;
@@ -220,29 +225,27 @@ class VtkReader {
     }
   }
 
-  void read_attribute(const std::string& keyword) {
+  /// One array in the way of VTK's older attributes. False when `keyword` names none.
+  bool read_attribute(const std::string& keyword) {
+    static constexpr std::array<std::pair<std::string_view, std::size_t>, 6> kComponents{
+        {{"vectors", 3}, {"normals", 3}, {"tensors", 9}, {"tensors6", 6}, {"global_ids", 1}, {"pedigree_ids", 1}}};
+    const auto fixed =
+        std::find_if(kComponents.begin(), kComponents.end(), [&](const auto& k) { return k.first == keyword; });
+    const bool own_components = keyword == "color_scalars" || keyword == "texture_coordinates";
     if (keyword == "lookup_table") {
       cursor_.word("a name");
       const std::size_t count = 4 * read_count("colours");
       (void)read_array<double>(count, Scalar::uint8, "colours");
-      return;
+    } else if (keyword == "scalars") {
+      read_scalars(decode_name(cursor_.word("a name")));
+    } else if (own_components || fixed != kComponents.end()) {
+      const std::string name = decode_name(cursor_.word("a name"));
+      const std::size_t components = own_components ? read_count("components") : fixed->second;
+      add_array(name, components, entities_, keyword == "color_scalars" ? Scalar::uint8 : read_type());
+    } else {
+      return false;
     }
-    const std::string name = decode_name(cursor_.word("a name"));
-    if (keyword == "scalars") return read_scalars(name);
-    if (keyword == "color_scalars") {
-      const std::size_t components = read_count("components");
-      return add_array(name, components, entities_, Scalar::uint8);
-    }
-    if (keyword == "texture_coordinates") {
-      const std::size_t components = read_count("components");
-      return add_array(name, components, entities_, read_type());
-    }
-    static constexpr std::array<std::pair<std::string_view, std::size_t>, 6> kComponents{
-        {{"vectors", 3}, {"normals", 3}, {"tensors", 9}, {"tensors6", 6}, {"global_ids", 1}, {"pedigree_ids", 1}}};
-    for (const auto& [known, components] : kComponents) {
-      if (keyword == known) return add_array(name, components, entities_, read_type());
-    }
-    cursor_.refuse("keyword " + in_quotes(keyword) + " is not known");
+    return true;
   }
 
   /// SCALARS name type [components], then optionally LOOKUP_TABLE name.

@@ -59,14 +59,15 @@ MeshFile read_vtkhdf(std::string_view bytes, const ReadOptions& options) {
 
   VtkBuilder builder;
   const auto coordinates = in.dataset<double>(root, "Points");
-  if (coordinates.columns != 3) refuse(fmt::format("Points has {} columns", coordinates.columns), "3");
+  if (coordinates.columns != 3) refuse(fmt::format("Points has {} columns", coordinates.columns), "it should have 3");
   check_size(coordinates.values.values.size(), 3 * points, "Points", 0);
   builder.set_points(coordinates.values);
 
   VtkCells grid;
   grid.connectivity = read_list(in, root, "Connectivity", entries);
   grid.ends = read_list(in, root, "Offsets", cells + 1);
-  if (grid.ends.values.front() != 0) refuse(fmt::format("Offsets starts with {}", grid.ends.values.front()), "0");
+  if (grid.ends.values.front() != 0)
+    refuse(fmt::format("Offsets starts with {}", grid.ends.values.front()), "it should be 0");
   grid.ends.values.erase(grid.ends.values.begin());
   grid.types = read_list(in, root, "Types", cells);
   builder.set_cells(grid);

@@ -156,8 +156,8 @@ Reals read_reals(VtuEncoding& file, pugi::xml_node array) { return read_array<do
 
 Integers read_integers(VtuEncoding& file, pugi::xml_node array) {
   if (is_float(scalar_of(file, array))) {
-    refuse(fmt::format("{} are not whole numbers", array.attribute("Name").as_string()), "Int32 or Int64",
-           line_of(file, array));
+    refuse(fmt::format("array {} does not hold whole numbers", in_quotes(array.attribute("Name").as_string())),
+           "Int32 or Int64", line_of(file, array));
   }
   return read_array<std::int64_t>(file, array);
 }

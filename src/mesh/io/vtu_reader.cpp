@@ -130,12 +130,11 @@ MeshFile read_vtu(std::string_view bytes, const ReadOptions& options) {
   if (const auto components = points.attribute("NumberOfComponents").as_ullong(3); components != 3) {
     refuse(fmt::format("points have {} components", components), "3, also for flat meshes", line_of(file, points));
   }
-  const Reals coordinates = read_reals(file, points);
-  builder.set_points(coordinates);
+  builder.set_points(read_reals(file, points));
   const std::uint64_t promised_points = piece.attribute("NumberOfPoints").as_ullong();
   if (builder.point_count() != promised_points) {
     refuse(fmt::format("the piece promises {} points and holds {}", promised_points, builder.point_count()), "",
-           coordinates.line);
+           line_of(file, piece));
   }
 
   const pugi::xml_node cells = child(file, piece, "Cells");
@@ -145,7 +144,7 @@ MeshFile read_vtu(std::string_view bytes, const ReadOptions& options) {
   const std::uint64_t promised_cells = piece.attribute("NumberOfCells").as_ullong();
   if (builder.cell_count() != promised_cells) {
     refuse(fmt::format("the piece promises {} cells and holds {}", promised_cells, builder.cell_count()), "",
-           line_of(file, cells));
+           line_of(file, piece));
   }
   read_fields(file, piece.child("PointData"), Centering::point, builder);
   read_fields(file, piece.child("CellData"), Centering::cell, builder);

@@ -1,0 +1,6 @@
+#include "mesh_target.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  rhexis::fuzz::check_mesh(rhexis::mesh::io::parse_vtk(rhexis::fuzz::as_text(data, size), "fuzz.vtk"));
+  return 0;
+}
