@@ -36,6 +36,7 @@ class TaylorHood final : public Model {
   std::string_view name() const override { return "taylor-hood"; }
   const DisplacementSpace& space() const override { return assembly_.space(); }
   std::int32_t pressure_unknowns() const override { return assembly_.vertex_count(); }
+  bool pressure_at_vertices() const override { return true; }
   bool allows_inversion() const override { return false; }
 
   State initial_state() const override {
