@@ -57,20 +57,24 @@ Section mesh() {
            .kind = Kind::vector,
            .unit = "m",
            .range = more_than(0.0),
+           .otherwise = "needed by `plate`, `bar`, `cube`",
            .doc = "Of a generated body, which fills the box from the origin to `size`."},
           {.name = "nodes",
            .kind = Kind::integer,
            .range = within(4, mesh::kMaxGeneratedNodes),
+           .otherwise = "needed to generate",
            .doc = "About how many nodes a generated body gets (within 2%)."},
           {.name = "radius",
            .kind = Kind::number,
            .unit = "m",
            .range = more_than(0.0),
+           .otherwise = "needed by `tube` without `size`",
            .doc = "Outer radius of a tube."},
           {.name = "length",
            .kind = Kind::number,
            .unit = "m",
            .range = more_than(0.0),
+           .otherwise = "needed by `tube` without `size`",
            .doc = "Of a tube, along its centre line."},
           {.name = "wall",
            .kind = Kind::number,
@@ -112,7 +116,13 @@ Section sets() {
 
 Section material() {
   const auto stiffness = [](std::string name, Range range, std::string doc) {
-    return Key{.name = std::move(name), .kind = Kind::number, .unit = "Pa", .range = range, .doc = std::move(doc)};
+    const bool elastic = name == "young";
+    return Key{.name = std::move(name),
+               .kind = Kind::number,
+               .unit = "Pa",
+               .range = range,
+               .otherwise = elastic ? "from the law" : "from `young` and `poisson`",
+               .doc = std::move(doc)};
   };
   return {
       .name = "material",
@@ -130,7 +140,11 @@ Section material() {
            .otherwise = "0; needed with gravity",
            .doc = "Mass per volume of the undeformed body."},
           stiffness("young", more_than(0.0), "Young's modulus E."),
-          {.name = "poisson", .kind = Kind::number, .range = strictly_within(-1.0, 0.5), .doc = "Poisson's ratio nu."},
+          {.name = "poisson",
+           .kind = Kind::number,
+           .range = strictly_within(-1.0, 0.5),
+           .otherwise = "from the law",
+           .doc = "Poisson's ratio nu."},
           {.name = "law",
            .kind = Kind::choice,
            .otherwise = "mooney-rivlin",
@@ -144,33 +158,31 @@ Section material() {
 }
 
 Section model() {
-  return {
-      .name = "model",
-      .doc = "How the body deforms.",
-      .keys = {
-          {.name = "kind",
-           .kind = Kind::choice,
-           .fallback = "\"hyperelastic\"",
-           .names = strings(model::kModelNames),
-           .doc = "The model, see docs/models.md."},
-          {.name = "beta",
-           .kind = Kind::number_or_auto,
-           .range = at_least(0.0),
-           .fallback = "\"auto\"",
-           .doc =
-               "Factor of the pressure stabilisation; 0 switches it off, `\"auto\"` chooses it from the material and "
-               "the mesh. Read by `hyperelastic`."},
-          {.name = "initial_lambda",
-           .kind = Kind::number,
-           .unit = "Pa",
-           .fallback = "0.0",
-           .doc = "Mean stress to start from. Read by `hyperelastic` and `taylor-hood`."},
-          {.name = "corotated_tangent",
-           .kind = Kind::choice,
-           .fallback = "\"exact\"",
-           .names = {"exact", "warped"},
-           .doc = "`warped` is R K_e R^T, which as a static iteration may diverge. Read by `corotated`."},
-      }};
+  return {.name = "model",
+          .doc = "How the body deforms.",
+          .keys = {
+              {.name = "kind",
+               .kind = Kind::choice,
+               .fallback = "\"hyperelastic\"",
+               .names = strings(model::kModelNames),
+               .doc = "The model, see docs/models.md."},
+              {.name = "beta",
+               .kind = Kind::number_or_auto,
+               .range = at_least(0.0),
+               .fallback = "\"auto\"",
+               .doc = "Factor of the pressure stabilisation; 0 switches it off, `\"auto\"` chooses it from the "
+                      "material. Read by `hyperelastic`."},
+              {.name = "initial_lambda",
+               .kind = Kind::number,
+               .unit = "Pa",
+               .fallback = "0.0",
+               .doc = "Mean stress to start from. Read by `hyperelastic` and `taylor-hood`."},
+              {.name = "corotated_tangent",
+               .kind = Kind::choice,
+               .fallback = "\"exact\"",
+               .names = {"exact", "warped"},
+               .doc = "`warped` is R K_e R^T, which as a static iteration may diverge. Read by `corotated`."},
+          }};
 }
 
 Section support() {
@@ -336,6 +348,7 @@ Section interaction() {
            .doc = "Forces of the torn body itself, or interpolated from a record."},
           {.name = "record",
            .kind = Kind::file,
+           .otherwise = "needed by `recorded`",
            .doc = "The record of `response = \"recorded\"`, written by `rhexis precompute`; relative to the scene."},
           {.name = "max_force",
            .kind = Kind::number,

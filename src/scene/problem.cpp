@@ -22,8 +22,7 @@ model::ModelSettings choose_settings(const Scene& scene, const mesh::TetMesh& me
                                 .corotated_tangent = scene.model.corotated_tangent};
   if (settings.kind != model::ModelKind::hyperelastic) return settings;
   settings.beta = scene.model.beta ? *scene.model.beta : model::auto_beta(settings.law);
-  if (!scene.model.beta)
-    problem.notes.push_back(fmt::format("beta = {:.4g}, chosen from the material and the mesh", settings.beta));
+  if (!scene.model.beta) problem.notes.push_back(fmt::format("beta = {:.4g}, chosen from the material", settings.beta));
   if (settings.beta > 0.0) {
     const double reach = model::smoothing_length(mesh, settings.law, settings.beta);
     const double thickness = mesh::thickness(mesh);
@@ -50,6 +49,9 @@ Expected<model::Loading> make_loading(const Scene& scene, const Body& body, cons
     if (!faces) return fail(faces.error());
     model::add_traction(body.mesh, space, *faces, traction.force, loading.dead_force);
   }
+  if (!loading.dead_force.allFinite())
+    return fail("the loads are too large for a computer's numbers", "a smaller density, gravity or traction",
+                scene.file);
   for (const PressureSettings& pressure : scene.pressures) {
     const Expected<std::vector<mesh::TetFace>> faces = faces_of(body, pressure.faces);
     if (!faces) return fail(faces.error());

@@ -211,6 +211,8 @@ const std::vector<Broken> kBroken{
      "s.toml:23: the supports leave the body a free rigid motion: translation along y, rotation about an axis along x "
      "through "
      "(0.02, 0, 0.005) m (hold another component, or more nodes)"},
+    {"endless_weight", "density = 1000.0", "density = 1e308",
+     "s.toml: the loads are too large for a computer's numbers (a smaller density, gravity or traction)"},
     {"no_mesh_file", "generate = \"bar\"", "file = \"none.msh\"",
      "s.toml:5: there is no mesh file 'none.msh' (a path relative to the scene)"},
 };
