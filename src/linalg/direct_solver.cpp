@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "linalg/linear_reports.h"
 #include "linalg/ordering.h"
 
 namespace rhexis::linalg {
@@ -20,23 +21,6 @@ constexpr int kMostRefinements = 3;
 constexpr double kBestResidual = 8.0 * std::numeric_limits<double>::epsilon();
 /// A residual that refinement leaves above this means that the factor is worthless.
 constexpr double kWorstResidual = 1e-6;
-
-constexpr const char* kSingularHelp =
-    "a part of the body may be free to move or to turn, or a node may have no stiffness: hold it";
-
-LinearReport failure(LinearOutcome outcome, std::string message) {
-  LinearReport report;
-  report.outcome = outcome;
-  report.message = std::move(message);
-  return report;
-}
-
-LinearReport out_of_memory(const SaddleMatrix& K) {
-  return failure(
-      LinearOutcome::not_supported,
-      fmt::format("the factors of {} unknowns do not fit into memory: take a coarser mesh or linear = \"cg\"",
-                  K.displacement_unknowns() + K.pressure_unknowns()));
-}
 
 }  // namespace
 
@@ -58,7 +42,7 @@ LinearReport DirectSolver::factor(const SaddleMatrix& K, const FreeDofs& free) {
     cholesky_.reset();
     assembled_.reset();
   }
-  if (!is_finite(K)) return failure(LinearOutcome::not_finite, "the matrix has an entry that is not a number");
+  if (!is_finite(K)) return bad_matrix();
   residual_.set_system(K, key_.free());
   if (K.pressure_unknowns() > 0 || K.skew) return factor_assembled(false);
 
@@ -148,7 +132,7 @@ LinearReport DirectSolver::solve(const VectorX& bu, const VectorX& bp, double to
   LinearReport report;
   report.negative_pivots = negative_pivots_;
   if (!is_finite(key_.free(), bu, bp)) {
-    return failure(LinearOutcome::not_finite, "the right-hand side has an entry that is not a number");
+    return bad_right_hand_side();
   }
   const double norm = residual_.norm(bu, bp);
   if (norm == 0.0) return report;

@@ -1,0 +1,61 @@
+#pragma once
+
+/// The preconditioner of the condensed operator S = A + B C^-1 B^T.
+///
+/// First part: one Cholesky factor of P = A + B D^-1 B^T, D = diag(C); its pattern is that of A when a pressure couples
+/// the nodes of one element. C = M / kappa + jumps is D up to a factor of two on pressures that oscillate from tet to
+/// tet, and far below D on smooth ones, so P lacks E = C^-1 - D^-1, which is large on few, smooth pressures.
+///
+/// Second part: those few are put back. W are the indicators of patches of pressures (m x k), and
+///
+///     E ~ (E W) (W^T E W)^-1 (E W)^T,       P~ = P + V G^-1 V^T,   V = B E W,  G = W^T E W,
+///     P~^-1 = P^-1 - P^-1 V (G + V^T P^-1 V)^-1 V^T P^-1,
+///
+/// Nystroem's approximation, exact on W. E W and G depend on C alone and stay while C does; P^-1 V costs k solves with
+/// many right-hand sides per factorisation.
+
+#include <Eigen/Cholesky>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "linalg/cholesky_factor.h"
+#include "linalg/saddle_matrix.h"
+
+namespace rhexis::linalg {
+
+class CondensedPreconditioner {
+ public:
+  /// For the patterns of K, over the free dofs.
+  CholeskyOutcome analyse(const SaddleMatrix& K, const FreeDofs& free);
+  /// Takes C and its factor: patches, E W, G. Again whenever C changes.
+  void set_c(const SymmetricCsr& C, CholeskyFactor& c_factor);
+  /// Takes A and B. Raises the diagonal when P is not positive definite, which A may cause while S is sound.
+  CholeskyOutcome factor(const SaddleMatrix& K, const FreeDofs& free);
+  /// z = P~^-1 r; zero on held dofs.
+  void solve(const VectorX& r, VectorX& z);
+
+  [[nodiscard]] Eigen::Index patches() const { return smooth_.cols(); }
+  [[nodiscard]] double shift() const { return shift_; }
+  [[nodiscard]] std::size_t memory_bytes() const;
+
+ private:
+  void assemble(const SaddleMatrix& K);
+  void correct(const SaddleMatrix& K, const FreeDofs& free);
+
+  SymmetricBlockMatrix P_;
+  std::vector<std::int32_t> a_block_;     ///< per block of A, its block in P; empty: the patterns are one
+  std::vector<std::int32_t> pair_block_;  ///< per pair of nodes of a pressure, row by row, its block in P
+  CholeskyFactor factor_;
+  VectorX d_;
+  double shift_ = 0.0;
+  Eigen::MatrixXd smooth_;              ///< E W, m x k
+  Eigen::MatrixXd G_;                   ///< W^T E W, k x k
+  Eigen::MatrixXd V_;                   ///< P^-1 V, 3n x k
+  Eigen::LLT<Eigen::MatrixXd> coarse_;  ///< of G + V^T P^-1 V
+  VectorX small_;                       ///< k
+};
+
+}  // namespace rhexis::linalg
