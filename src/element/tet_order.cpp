@@ -74,8 +74,9 @@ class Levels {
   std::int32_t next_rank_ = 0;
 };
 
-/// Large enough that a colour is worth a barrier, small enough that even a small mesh feeds several threads.
-std::size_t chunk_target(std::size_t tets) { return std::clamp<std::size_t>(tets / 64, 64, 1024); }
+/// Some 32 chunks feed several threads. Each colour goes through the whole matrix once, so that colours cost memory
+/// traffic, and chunks of fewer tets than this are not worth a thread.
+std::size_t chunk_target(std::size_t tets) { return std::max<std::size_t>(tets / 32, 64); }
 
 struct Chunks {
   std::vector<std::int32_t> tets;
@@ -106,10 +107,10 @@ Chunks cut(const mesh::TetMesh& mesh) {
   for (std::size_t begin = 0; begin < keys.size();) {
     std::size_t end = begin;
     while (end < keys.size() && keys[end].level == keys[begin].level) ++end;
-    if (end - out.start.back() > target + target / 2 && begin > out.start.back()) out.start.push_back(begin);
-    const std::size_t size = end - out.start.back();
+    if (begin > out.start.back() && end - out.start.back() > target + target / 2) out.start.push_back(begin);
+    const std::size_t from = out.start.back(), size = end - from;
     if (size >= target) {
-      const std::size_t from = out.start.back(), pieces = (size + target / 2) / target;
+      const std::size_t pieces = std::max<std::size_t>(1, size / (2 * target));
       for (std::size_t p = 1; p <= pieces; ++p) out.start.push_back(from + size * p / pieces);
     }
     begin = end;

@@ -2,7 +2,10 @@
 
 /// Meshes, states and dense matrices for the tests of the models on linear tets.
 
+#include <ostream>
 #include <random>
+#include <string>
+#include <vector>
 
 #include <Eigen/Dense>
 
@@ -42,6 +45,37 @@ inline model::State random_state(const mesh::TetMesh& mesh, std::int32_t pressur
   state.lambda.resize(pressures);
   for (double& value : state.lambda) value = 5e4 * unit(random);
   return state;
+}
+
+struct P1Case {
+  std::string name;
+  model::ModelSettings settings;
+
+  friend std::ostream& operator<<(std::ostream& out, const P1Case& c) { return out << c.name; }
+};
+
+/// Every P1 finite element model, law, tangent and a spread of betas.
+inline std::vector<P1Case> p1_cases() {
+  const auto make = [](const char* name, model::ModelKind kind, double beta = 0.0) {
+    model::ModelSettings settings;
+    settings.kind = kind;
+    settings.elastic = kElastic;
+    settings.law = kLaw;
+    settings.beta = beta;
+    settings.initial_lambda = 300.0;
+    return P1Case{name, settings};
+  };
+  std::vector<P1Case> out{make("linear", model::ModelKind::linear),
+                          make("corotated", model::ModelKind::corotated),
+                          make("warped", model::ModelKind::corotated),
+                          make("geometrically_nonlinear", model::ModelKind::geometrically_nonlinear),
+                          make("hyperelastic_beta0", model::ModelKind::hyperelastic),
+                          make("hyperelastic_beta1", model::ModelKind::hyperelastic, 1.0),
+                          make("hyperelastic_beta100", model::ModelKind::hyperelastic, 100.0),
+                          make("neo_hookean_beta10", model::ModelKind::hyperelastic, 10.0)};
+  out[2].settings.corotated_tangent = model::CorotatedTangent::warped;
+  out.back().settings.law.c2 = 0.0;
+  return out;
 }
 
 struct Evaluated {

@@ -83,6 +83,10 @@ struct MixedLoops {
                       double* coupling, double* J) {
     for (std::int32_t i = 0; i < run.count; ++i) {
       const TetBatch& batch = run.batches[i];
+      if (i + 1 < run.count) {
+        prefetch_blocks(run.places[i + 1], blocks);
+        prefetch_coupling(run.batches[i + 1], coupling);
+      }
       for (int first = 0; first < batch.count; first += kWidth) {
         const TetLanes t = load_lanes(batch, first, u);
         const Deformation<Pack> d = material::deformation_of(t.F, t.J);

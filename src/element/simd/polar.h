@@ -60,14 +60,14 @@ RHEXIS_INLINE Polar polar_of(const Pack (&F)[9], Pack det) {
   };
   newton();
   newton();
-  // Quadratic: after a step of 1e-9 t the error is at rounding.
-  for (int i = 0; i < 14; ++i) {
-    if (all_less(abs(newton()), 1e-9 * t)) break;
-  }
+  // Quadratic: after a step of 1e-9 t the error is at rounding. Lanes that are still far (F hundreds of times larger or
+  // smaller than a rotation, or rank one) count as poor.
+  Pack step = newton();
+  for (int i = 0; i < 12 && !all_less(abs(step), 1e-9 * t); ++i) step = newton();
   const Pack k = 0.5 * (t * t - a);
   Polar out;
   out.t = t;
-  out.zeta = zeta = k * t - det;
+  out.zeta = zeta = where_less(abs(step), 1e-9 * t, k * t - det, 0.0);
   const Pack inverse = 1.0 / zeta;
   const Pack diagonal = k + a;
   // F F^T F, through the symmetric F F^T.
