@@ -1,5 +1,5 @@
+#include "fuzz/mesh_target.h"
 #include "mesh/io/gzip.h"
-#include "mesh_target.h"
 
 // The first bit chooses: the bytes as a .gz file, or packed here so that mutations reach the reader behind.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
