@@ -35,10 +35,13 @@ double distance_to(const TetMesh& mesh, TetFace face, const Ray& ray) {
   return outward.dot(mesh.node(a) - ray.from) / slope;
 }
 
-/// Length of the ray inside the body, walked from tet to tet; negative when it got lost among flat tets. No search
-/// structure is needed, and coincident but unconnected faces (a slit) end the ray as they should.
-double chord(const TetMesh& mesh, const FaceMates& mates, TetFace entry, const Ray& ray) {
-  for (std::size_t step = 0; step < mesh.tet_count(); ++step) {
+/// Steps that all rays may take together, per tet. A sound mesh needs 2 to 10; a folded one can send a ray in circles.
+constexpr std::size_t kStepsPerTet = 100;
+
+/// Length of the ray inside the body, walked from tet to tet; negative when it got lost among flat tets, or no steps
+/// are left. No search structure is needed, and coincident but unconnected faces (a slit) end the ray as they should.
+double chord(const TetMesh& mesh, const FaceMates& mates, TetFace entry, const Ray& ray, std::size_t& steps_left) {
+  for (std::size_t step = 0; step < mesh.tet_count() && steps_left > 0; ++step, --steps_left) {
     TetFace exit{entry.tet, -1};
     double length = std::numeric_limits<double>::infinity();
     for (std::int8_t k = 0; k < 4; ++k) {
@@ -65,13 +68,14 @@ double thickness(const TetMesh& mesh) {
   std::vector<std::pair<double, double>> chords;  // (length, area)
   chords.reserve(faces.boundary.size());
   double total = 0.0;
+  std::size_t steps_left = kStepsPerTet * mesh.tet_count();
   for (const TetFace face : faces.boundary) {
     const auto [a, b, c] = face_nodes(mesh, face);
     const Vec3 twice_area = (mesh.node(b) - mesh.node(a)).cross(mesh.node(c) - mesh.node(a));
     const double area = 0.5 * twice_area.norm();
     if (!(area > 0.0)) continue;
-    const double length =
-        chord(mesh, mates, face, {(mesh.node(a) + mesh.node(b) + mesh.node(c)) / 3.0, -twice_area.normalized()});
+    const double length = chord(
+        mesh, mates, face, {(mesh.node(a) + mesh.node(b) + mesh.node(c)) / 3.0, -twice_area.normalized()}, steps_left);
     if (!(length > 0.0)) continue;
     chords.emplace_back(length, area);
     total += area;
