@@ -8,14 +8,12 @@
 
 #include "base/check.h"
 #include "linalg/linear_reports.h"
+#include "linalg/null_pivot.h"
 #include "linalg/ordering.h"
 
 namespace rhexis::linalg {
 namespace {
 
-/// What cancellation leaves of a diagonal entry below this is rounding (CholeskyFactor::smallest_pivot): bodies with a
-/// free rigid motion leave 1e-14 and less, a rod five hundred elements long needs 1e-11.
-constexpr double kSmallestPivot = 1e-13;
 constexpr int kMostRefinements = 3;
 /// Not below: the rounding of K x itself.
 constexpr double kBestResidual = 8.0 * std::numeric_limits<double>::epsilon();
@@ -51,7 +49,7 @@ LinearReport DirectSolver::factor(const SaddleMatrix& K, const FreeDofs& free) {
     case CholeskyOutcome::not_positive_definite: return factor_assembled(true);
     case CholeskyOutcome::out_of_memory: return out_of_memory(K);
   }
-  if (cholesky_->smallest_pivot() < kSmallestPivot) {
+  if (cholesky_->smallest_pivot() < null_pivot(key_.free().count())) {
     return failure(LinearOutcome::singular, fmt::format("the matrix is singular: {}", kSingularHelp));
   }
   method_ = Method::cholesky;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "linalg/null_pivot.h"
 #include "linalg/one_thread.h"
 
 namespace rhexis::linalg {
@@ -13,10 +14,6 @@ namespace {
 
 constexpr MUMPS_INT kUseCommWorld = -987654;
 enum Job : MUMPS_INT { kStart = -1, kEnd = -2, kAnalyse = 1, kFactor = 2, kSolve = 3 };
-
-/// A pivot below this fraction of the scaled matrix is rounding: a free rigid motion leaves some 1e-15, a slender rod
-/// of hundreds of elements needs 1e-11.
-constexpr double kNullPivot = 1e-13;
 
 /// MUMPS keeps state of the run in Fortran modules: one call at a time in a process.
 std::mutex& mumps_mutex() {
@@ -40,7 +37,6 @@ struct MumpsFactor::Instance {
     icntl(12) = 1;  // no compressed graph: every diagonal entry is there
     icntl(13) = 1;  // the root like any front: its inertia is counted
     icntl(24) = 1;  // carry on past null pivots, and count them
-    mumps.cntl[3 - 1] = kNullPivot;
   }
   ~Instance() { call(kEnd); }
   Instance(const Instance&) = delete;
@@ -81,6 +77,7 @@ MumpsOutcome MumpsFactor::analyse(std::int32_t size, std::span<const std::int32_
   RHEXIS_CHECK(rows.size() == columns.size() && place.size() == static_cast<std::size_t>(size), "{} rows, {} columns",
                rows.size(), columns.size());
   mumps.n = size;
+  mumps.cntl[3 - 1] = null_pivot(size);
   mumps.nnz = static_cast<MUMPS_INT8>(rows.size());
   mumps.irn = const_cast<MUMPS_INT*>(rows.data());  // read only
   mumps.jcn = const_cast<MUMPS_INT*>(columns.data());

@@ -4,7 +4,8 @@
 ///
 ///   direct   m = 0: sparse Cholesky (CHOLMOD); when A is not positive definite, and for m > 0: LDL^T (MUMPS) with its
 ///            inertia; with a skew part: LU (MUMPS)
-///   cg       m = 0: conjugate gradients on A; m > 0: on the condensed A + B C^-1 B^T, C factored once per topology,
+///   cg       m = 0: conjugate gradients on A, preconditioned by an incomplete Cholesky factor; m > 0: on the condensed
+///   A + B C^-1 B^T, C factored once per topology,
 ///            preconditioned by one Cholesky of A + B diag(C)^-1 B^T and a coarse correction on patch-wise constant
 ///            pressures (section 1.4 of the specification, see docs/solvers.md)
 ///   minres   MINRES on the saddle system with the block preconditioner diag(A0, S0): A0 an SPD stand-in for A, S0 for
@@ -28,7 +29,7 @@ struct LinearReport {
   int iterations = 0;                  ///< 0 for direct
   double relative_residual = 0.0;      ///< |K x - b| / |b|, measured, not estimated
   std::optional<int> negative_pivots;  ///< beyond the m of a stable saddle point; empty where it cannot be known
-  std::string message;                 ///< one line: what happened and what would help; empty when ok
+  std::string message;                 ///< one line: what happened and what would help; empty when nothing did
   [[nodiscard]] bool ok() const { return outcome == LinearOutcome::ok; }
 };
 
