@@ -23,7 +23,7 @@ class TetBatches {
   /// Looks up where the blocks of each tet lie; before the first tangent.
   void place_blocks(const linalg::BlockPattern& pattern);
 
-  /// Calls body(run, chunk) for every chunk: colours in order, chunks of a colour in parallel. No allocation.
+  /// Calls body(run, chunk) for every chunk: colours in order, chunks of a colour in parallel.
   void for_each_chunk(const std::function<void(const TetRun&, std::size_t chunk)>& body) const;
 
   [[nodiscard]] std::size_t chunk_count() const { return chunks_.size(); }

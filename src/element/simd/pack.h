@@ -5,6 +5,7 @@
 /// kWidth lanes; arithmetic by lane.
 struct Pack {
   typedef double Native __attribute__((vector_size(8 * kWidth)));
+  typedef double InMemory __attribute__((vector_size(8 * kWidth), may_alias));  // doubles of an array
   typedef long long Bits __attribute__((vector_size(8 * kWidth)));
 
   Native v;
@@ -14,8 +15,8 @@ struct Pack {
   RHEXIS_INLINE Pack(double value) : v(value * (Native{} + 1.0)) {}
 
   /// `from` is aligned to the register.
-  RHEXIS_INLINE static Pack load(const double* from) { return *reinterpret_cast<const Native*>(from); }
-  RHEXIS_INLINE void store(double* to) const { *reinterpret_cast<Native*>(to) = v; }
+  RHEXIS_INLINE static Pack load(const double* from) { return *reinterpret_cast<const InMemory*>(from); }
+  RHEXIS_INLINE void store(double* to) const { *reinterpret_cast<InMemory*>(to) = v; }
 
   friend RHEXIS_INLINE Pack operator+(Pack a, Pack b) { return a.v + b.v; }
   friend RHEXIS_INLINE Pack operator-(Pack a, Pack b) { return a.v - b.v; }
