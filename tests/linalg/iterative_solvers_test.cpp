@@ -82,7 +82,7 @@ TEST(ConjugateGradients, solve_displacement_systems) {
   const Solution found = solve(*solver, K, problem.free, load.bu, load.bp, 1e-10);
   expect_like_direct(found, K, problem.free, load, 1e-10);
   EXPECT_GT(found.solve.iterations, 5);
-  EXPECT_LT(found.solve.iterations, 80);  // unpreconditioned: some 200
+  EXPECT_LT(found.solve.iterations, 80);
   EXPECT_FALSE(found.solve.negative_pivots.has_value());
 }
 
@@ -251,7 +251,7 @@ TEST(Minres, iterations_stay_flat_under_refinement) {
     iterations.push_back(found.solve.iterations);
     RecordProperty("iterations_n" + std::to_string(n), found.solve.iterations);
   }
-  // 27, 37, 43, 44 (docs/solvers.md): 90 times as many tets, and no growth at the end.
+  // 28, 37, 42, 46 (docs/solvers.md) for 90 times as many tets: it levels off.
   EXPECT_LE(iterations[3], iterations[2] + 4);
   EXPECT_LE(iterations[3], 50);
 }
