@@ -10,7 +10,6 @@ namespace {
 
 /// The parts of a dotted key, by the rules of TOML (parts in quotes may hold dots); empty when it is none.
 std::vector<std::string> split_key(const std::string& key) {
-  if (key.find('\n') != std::string::npos) return {};
   Expected<Node> parsed = parse_document(key + " = 0", {});
   std::vector<std::string> parts;
   const Node* node = parsed ? &*parsed : nullptr;
@@ -25,9 +24,8 @@ std::vector<std::string> split_key(const std::string& key) {
 }
 
 Node parse_value(const std::string& text) {
-  if (text.find('\n') == std::string::npos) {
-    if (Expected<Node> parsed = parse_document("value = " + text, {}))
-      if (Table& table = *parsed->as<Table>(); table.size() == 1) return std::move(table.front().node);
+  if (Expected<Node> parsed = parse_document("value = " + text, {})) {
+    if (Table& table = *parsed->as<Table>(); table.size() == 1) return std::move(table.front().node);
   }
   return Node{.value = text, .place = {}, .raw = {}};
 }
@@ -85,6 +83,9 @@ Expected<Node*> child(Node& holder, const std::string& part, const std::string& 
 
 Expected<void> apply_override(Node& root, const std::string& override) {
   const Place place{std::make_shared<const std::string>("--set " + one_line(override, 200)), 0};
+  // As a comment anything goes that is one line of valid text.
+  if (override.find('\n') != std::string::npos || !parse_document("# " + override, {}))
+    return place.fail("not a line of text in UTF-8", "--set key=value, as in --set model.beta=0");
   const std::size_t equals = override.find('=');
   if (equals == std::string::npos) return place.fail("no '=' in it", "--set key=value, as in --set model.beta=0");
   const std::vector<std::string> parts = split_key(override.substr(0, equals));

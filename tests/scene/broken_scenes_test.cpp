@@ -212,6 +212,15 @@ INSTANTIATE_TEST_SUITE_P(Ranges, BrokenScene, testing::ValuesIn(kRanges), name_o
 INSTANTIATE_TEST_SUITE_P(Together, BrokenScene, testing::ValuesIn(kTogether), name_of);
 INSTANTIATE_TEST_SUITE_P(Syntax, BrokenScene, testing::ValuesIn(kSyntax), name_of);
 
+// Where toml++ 3.3 fails an assertion of its own.
+TEST(BrokenScene, WhatTheParserDoesNotExpect) {
+  EXPECT_EQ(message_of(spoil("[solver]", "[}]")), "s.toml:32: not valid TOML");
+  EXPECT_EQ(message_of(spoil("[solver]", "[[[solver]]]")), "s.toml:32: not valid TOML");
+  EXPECT_EQ(message_of("[="), "s.toml:1: not valid TOML");
+  EXPECT_EQ(message_of(kGood, {"[}]=3"}),
+            "--set [}]=3: not a key before the '=' (a dotted name, as in --set model.beta=0)");
+}
+
 TEST(BrokenScene, FirstMistakeOfTheDocumentIsTold) {
   EXPECT_EQ(message_of(spoil("poisson = 0.45", "poisson = 0.7", spoil("side = \"-x\"", "side = \"-w\""))),
             "s.toml:10: 'sets.wall.side' is '-w', an unknown name (known: -x, +x, -y, +y, -z, +z)");

@@ -69,7 +69,11 @@ TEST(Override, ErrorsNameIt) {
   EXPECT_EQ(line("mesh.file=a.msh"),
             "--set mesh.file=a.msh: 'mesh.file' and 'mesh.generate' are both given (give one of them)");
   EXPECT_EQ(line("model.beta=1\ntitle=2"),
-            "--set model.beta=1?title=2: 'model.beta' is '1?title=2' (give \"auto\" or a number, at least 0)");
+            "--set model.beta=1?title=2: not a line of text in UTF-8 (--set key=value, as in --set model.beta=0)");
+  EXPECT_EQ(line("title=\xff"),
+            "--set title=\xff: not a line of text in UTF-8 (--set key=value, as in --set model.beta=0)");
+  EXPECT_EQ(line("title=\x01"),
+            "--set title=?: not a line of text in UTF-8 (--set key=value, as in --set model.beta=0)");
   EXPECT_EQ(line("material="),
             "s.toml: [material] is missing (a section with density, young, poisson, law, c1, c2, kappa)");
 }
