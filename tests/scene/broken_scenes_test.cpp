@@ -217,6 +217,9 @@ TEST(BrokenScene, WhatTheParserDoesNotExpect) {
   EXPECT_EQ(message_of(spoil("[solver]", "[}]")), "s.toml:32: not valid TOML");
   EXPECT_EQ(message_of(spoil("[solver]", "[[[solver]]]")), "s.toml:32: not valid TOML");
   EXPECT_EQ(message_of("[="), "s.toml:1: not valid TOML");
+  EXPECT_EQ(message_of(spoil("young", "\u00e4")),
+            "s.toml:16: not valid TOML: root table: expected keys, tables, whitespace or comments, saw '\u00e4'");
+  EXPECT_EQ(message_of(spoil("\"Bar\"", "\"\"\"B\u00e4r \\\n  \u00e4\"\"\"")), "good");
   EXPECT_EQ(message_of(kGood, {"[}]=3"}),
             "--set [}]=3: not a key before the '=' (a dotted name, as in --set model.beta=0)");
 }
