@@ -42,13 +42,19 @@ inline Where everywhere_at(int component, double value) {
   return [=](const Vec3& x) { return std::abs(x[component] - value) < kNear; };
 }
 
-/// A cantilever 0.1 x 0.1 x 0.4 m along z, bent by its weight: n x n x 4 n cells.
-inline StudyBody make_bar_body(int n) {
+/// A cantilever 0.1 x 0.1 x 0.4 m along z, bent by its weight.
+inline StudyBody make_bar_body(mesh::TetMesh mesh) {
   StudyBody body;
-  body.mesh = make_kuhn_box({.cells = {n, n, 4 * n}, .map = [n](const Vec3& x) { return Vec3(x * (0.1 / n)); }});
+  body.mesh = std::move(mesh);
   body.supports = {{everywhere_at(2, 0.0), {0, 1, 2}}};
   body.body_force = Vec3(0, -9810, 0);
   return body;
+}
+
+/// n x n x 4 n cells.
+inline StudyBody make_bar_body(int n) {
+  return make_bar_body(
+      make_kuhn_box({.cells = {n, n, 4 * n}, .map = [n](const Vec3& x) { return Vec3(x * (0.1 / n)); }}));
 }
 
 /// Cook's membrane in plane strain, 48 x 44 to 60 mm, 12 mm thick: n x n x max(1, n / 4) cells.

@@ -10,7 +10,9 @@
 #include <map>
 #include <set>
 
+#include "mesh/generate.h"
 #include "mesh/quality.h"
+#include "mesh/validate.h"
 #include "model/stabilisation.h"
 #include "tests/solver/stabilisation_bodies.h"
 #include "tests/support/measured.h"
@@ -30,6 +32,7 @@ const std::vector<NamedBody>& bodies() {
   static const std::vector<NamedBody> list{
       {"bar3", [] { return test::make_bar_body(3); }, When::two_nus},
       {"bar4", [] { return test::make_bar_body(4); }},
+      {"barfree", [] { return test::make_bar_body(mesh::make_bar({.size = Vec3(0.1, 0.1, 0.4)}, 300).value()); }},
       {"cook4", [] { return test::make_cook_body(4); }, When::always},
       {"cook8", [] { return test::make_cook_body(8); }},
       {"foot4", [] { return test::make_foot_body(4, true); }, When::always},
@@ -150,6 +153,21 @@ std::vector<Case> cases() {
 INSTANTIATE_TEST_SUITE_P(All, AutoBetaStudy, testing::ValuesIn(cases()), [](const auto& tested) {
   return fmt::format("{}_nu{:.0f}", tested.param.body.name, 1e4 * tested.param.nu);
 });
+
+TEST(StudyBodies, MeshesAndTheirRefinementsAreSoundAndFillTheSame) {
+  for (const NamedBody& named : bodies()) {
+    const mesh::TetMesh mesh = named.make().mesh;
+    const mesh::TetMesh fine = test::refine(mesh);
+    EXPECT_TRUE(mesh::find_defects(mesh).empty()) << named.name;
+    EXPECT_TRUE(mesh::find_defects(fine).empty()) << named.name;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+      double volume = 0.0;
+      for (std::size_t child = 8 * t; child < 8 * (t + 1); ++child) volume += mesh::signed_volume(fine, TetId(child));
+      ASSERT_NEAR(volume, mesh::signed_volume(mesh, TetId(t)), 1e-12 * volume) << named.name << " tet " << t;
+    }
+    EXPECT_EQ(mesh::find_faces(fine).boundary.size(), 4 * mesh::find_faces(mesh).boundary.size()) << named.name;
+  }
+}
 
 // What a beta costs in lambda goes by the length over which it smooths, not by beta: at equal lengths, betas that
 // differ a hundredfold lose the same; at equal beta they do not.

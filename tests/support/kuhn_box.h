@@ -43,6 +43,7 @@ class Shift {
   std::uint64_t state_ = 1;
 };
 
+/// Which two vertices are swapped matters to `refine`, which chooses between diagonals of equal length by their order.
 inline void orient(mesh::TetMesh& mesh) {
   for (std::size_t t = 0; t < mesh.tet_count(); ++t)
     if (mesh::signed_volume(mesh, TetId(t)) < 0.0) std::swap(mesh.tets[t][1], mesh.tets[t][2]);
