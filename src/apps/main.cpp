@@ -5,10 +5,12 @@
 //   rhexis compare out/a out/b
 //   rhexis mesh info vessel.msh
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 
 #include "apps/command.h"
+#include "base/nearest_name.h"
 
 namespace rhexis::apps {
 
@@ -21,6 +23,21 @@ int report(const Error& error) {
 void print_json(const nlohmann::ordered_json& json) { fmt::print("{}\n", json.dump(2)); }
 
 namespace {
+
+/// The first word that is no option has to be a command; CLI11 would only say that one is required. Empty when it is.
+std::string unknown_command(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word.starts_with('-')) continue;
+    if (std::find(names.begin(), names.end(), word) != names.end()) return {};
+    const std::string near = nearest_name(word, names);
+    return fmt::format("unknown command '{}' ({})", word,
+                       near.empty() ? "see `rhexis --help`" : "did you mean '" + near + "'?");
+  }
+  return {};
+}
 
 int run(int argc, char** argv) {
   CLI::App app(
@@ -44,6 +61,10 @@ int run(int argc, char** argv) {
   app.parse_complete_callback([&] {
     set_up_log(common.verbose ? Verbosity::verbose : common.quiet ? Verbosity::quiet : Verbosity::normal);
   });
+  if (const std::string unknown = unknown_command(app, argc, argv); !unknown.empty()) {
+    fmt::print(stderr, "rhexis: {}\n", unknown);
+    return kBadInput;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

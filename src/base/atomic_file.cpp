@@ -38,7 +38,9 @@ Expected<void> write_atomically(const fs::path& path, std::string_view contents)
     std::ofstream file(temporary, std::ios::binary);
     file.write(contents.data(), static_cast<std::streamsize>(contents.size()));
     file.close();
-    if (!file) return fail(std::string("cannot write: ") + std::strerror(errno), "choose a folder that can be written to", path.string());
+    if (!file)
+      return fail(std::string("cannot write: ") + std::strerror(errno), "choose a folder that can be written to",
+                  path.string());
     return {};
   });
 }

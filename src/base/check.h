@@ -14,8 +14,8 @@ namespace rhexis {
 }  // namespace rhexis
 
 /// RHEXIS_CHECK(condition, format, arguments...): on in every build, so keep it out of inner loops.
-#define RHEXIS_CHECK(condition, ...)                                                          \
-  do {                                                                                        \
-    if (!(condition)) [[unlikely]]                                                            \
-      ::rhexis::check_failed(#condition, __FILE__, __LINE__, ::fmt::format(__VA_ARGS__));     \
+#define RHEXIS_CHECK(condition, ...)                                                      \
+  do {                                                                                    \
+    if (!(condition)) [[unlikely]]                                                        \
+      ::rhexis::check_failed(#condition, __FILE__, __LINE__, ::fmt::format(__VA_ARGS__)); \
   } while (false)

@@ -29,7 +29,8 @@ template <class T>
 using Expected = tl::expected<T, Error>;
 
 /// return fail("set 'top' holds no node", "enlarge its box");
-[[nodiscard]] inline tl::unexpected<Error> fail(std::string what, std::string remedy = {}, std::string file = {}, int line = 0) {
+[[nodiscard]] inline tl::unexpected<Error> fail(std::string what, std::string remedy = {}, std::string file = {},
+                                                int line = 0) {
   return tl::unexpected<Error>(Error{std::move(what), std::move(remedy), std::move(file), line});
 }
 [[nodiscard]] inline tl::unexpected<Error> fail(Error error) { return tl::unexpected<Error>(std::move(error)); }

@@ -13,7 +13,8 @@ class Hash {
   template <class T>
     requires std::is_trivially_copyable_v<T>
   Hash& add(std::span<const T> values) {
-    for (const std::byte byte : std::as_bytes(values)) value_ = (value_ ^ static_cast<std::uint64_t>(byte)) * 0x100000001b3ULL;
+    for (const std::byte byte : std::as_bytes(values))
+      value_ = (value_ ^ static_cast<std::uint64_t>(byte)) * 0x100000001b3ULL;
     return *this;
   }
   [[nodiscard]] std::uint64_t value() const { return value_; }

@@ -1,5 +1,8 @@
 #include "linalg/condensed_cg.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/check.h"
 #include "linalg/linear_reports.h"
 #include "linalg/measured_iteration.h"
@@ -8,6 +11,9 @@ namespace rhexis::linalg {
 namespace {
 
 constexpr int kMaxIterations = 2000;
+/// A preconditioner of an earlier matrix is given up when a decade of the residual costs this many times the iterations
+/// that it cost at first: a factorisation costs about as much as the solves of ten to twenty iterations.
+constexpr double kWorn = 1.5;
 constexpr std::string_view kOperator = "the stiffness with the pressures eliminated";
 
 }  // namespace
@@ -21,10 +27,12 @@ LinearReport CondensedCg::factor(const SaddleMatrix& K, const FreeDofs& free) {
     c_factor_.reset();
   }
   residual_.set_system(K, key_.free());
-  CholeskyOutcome outcome = take_c(K.C);
+  CholeskyOutcome outcome = take_c(K);
   if (outcome == CholeskyOutcome::not_positive_definite) return indefinite("the pressure block");
   if (outcome == CholeskyOutcome::ok && !same_system) outcome = preconditioner_.analyse(K, key_.free());
-  if (outcome == CholeskyOutcome::ok) outcome = preconditioner_.factor(K, key_.free());
+  preconditioner_kept_ = outcome == CholeskyOutcome::ok && same_system && !preconditioner_worn_;
+  if (outcome == CholeskyOutcome::ok && !preconditioner_kept_) outcome = preconditioner_.factor(K, key_.free());
+  preconditioner_worn_ = outcome != CholeskyOutcome::ok;
   if (outcome == CholeskyOutcome::not_positive_definite) return indefinite(kOperator);
   if (outcome == CholeskyOutcome::out_of_memory) {
     key_ = {};
@@ -34,7 +42,8 @@ LinearReport CondensedCg::factor(const SaddleMatrix& K, const FreeDofs& free) {
   return {};
 }
 
-CholeskyOutcome CondensedCg::take_c(const SymmetricCsr& C) {
+CholeskyOutcome CondensedCg::take_c(const SaddleMatrix& K) {
+  const SymmetricCsr& C = K.C;
   if (c_factor_ && c_values_ == C.values) return CholeskyOutcome::ok;
   CholeskyOutcome outcome = CholeskyOutcome::ok;
   if (!c_factor_) outcome = c_factor_.emplace().analyse(*C.pattern);
@@ -44,7 +53,8 @@ CholeskyOutcome CondensedCg::take_c(const SymmetricCsr& C) {
     return outcome;
   }
   c_values_ = C.values;
-  preconditioner_.set_c(C, *c_factor_);
+  preconditioner_.set_c(K, *c_factor_);
+  preconditioner_worn_ = true;
   return outcome;
 }
 
@@ -60,6 +70,30 @@ LinearReport CondensedCg::solve(const VectorX& bu, const VectorX& bp, double tol
   p_.resize(bp.size());
   q_.resize(bp.size());
 
+  LinearReport report = iterate(bu, bp, norm, tolerance, xu, xp);
+  if (!report.ok() && preconditioner_kept_) {
+    const CholeskyOutcome outcome = preconditioner_.factor(*K_, free);
+    if (outcome != CholeskyOutcome::ok) {
+      preconditioner_worn_ = true;
+      return outcome == CholeskyOutcome::out_of_memory ? out_of_memory(*K_) : indefinite(kOperator);
+    }
+    preconditioner_kept_ = false;
+    xu.setZero();
+    xp.setZero();
+    report = iterate(bu, bp, norm, tolerance, xu, xp);
+  }
+  const double cost = report.iterations / std::max(1.0, -std::log10(tolerance));
+  if (preconditioner_kept_) {
+    preconditioner_worn_ = cost > kWorn * new_cost_ + 1.0;
+  } else {
+    new_cost_ = cost;
+  }
+  return report;
+}
+
+LinearReport CondensedCg::iterate(const VectorX& bu, const VectorX& bp, double norm, double tolerance, VectorX& xu,
+                                  VectorX& xp) {
+  const FreeDofs& free = key_.free();
   const auto apply = [&](const VectorX& x, VectorX& y) {
     K_->A.multiply(x, y);
     K_->B.multiply(x, q_);

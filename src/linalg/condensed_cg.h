@@ -12,7 +12,9 @@
 namespace rhexis::linalg {
 
 /// Conjugate gradients on the condensed S = A + B C^-1 B^T: the pressure p = C^-1 (B^T u - bp) is eliminated, and
-/// S u = bu + B C^-1 bp. C is factored when it changes (with the topology), the preconditioner with every matrix.
+/// S u = bu + B C^-1 bp. C is factored when it changes (with the topology). The preconditioner is kept from matrix to
+/// matrix as long as the iterations it costs stay near those that it cost when it was new: a Newton iteration is then a
+/// few solves and no factorisation.
 class CondensedCg final : public SaddleSolver {
  public:
   LinearReport factor(const SaddleMatrix& K, const FreeDofs& free) override;
@@ -20,7 +22,8 @@ class CondensedCg final : public SaddleSolver {
   [[nodiscard]] std::size_t memory_bytes() const override;
 
  private:
-  CholeskyOutcome take_c(const SymmetricCsr& C);
+  CholeskyOutcome take_c(const SaddleMatrix& K);
+  LinearReport iterate(const VectorX& bu, const VectorX& bp, double norm, double tolerance, VectorX& xu, VectorX& xp);
 
   const SaddleMatrix* K_ = nullptr;
   SystemKey key_;
@@ -28,6 +31,9 @@ class CondensedCg final : public SaddleSolver {
   std::optional<CholeskyFactor> c_factor_;
   std::vector<double> c_values_;  ///< that were factored
   CondensedPreconditioner preconditioner_;
+  bool preconditioner_kept_ = false;  ///< from an earlier matrix
+  bool preconditioner_worn_ = true;   ///< the next matrix gets its own
+  double new_cost_ = 0.0;             ///< iterations a decade of the residual when it was new
   CgWorkspace work_;
   VectorX r_;
   VectorX p_;

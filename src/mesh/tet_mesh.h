@@ -40,10 +40,10 @@ struct FaceSet {
 };
 
 struct TetMesh {
-  std::vector<Vec3> nodes;          ///< reference position X, metres
-  std::vector<Tet> tets;            ///< positively oriented: det[X1-X0, X2-X0, X3-X0] > 0
-  std::vector<NodeSet> node_sets;   ///< names are unique among node sets
-  std::vector<FaceSet> face_sets;   ///< names are unique among face sets
+  std::vector<Vec3> nodes;         ///< reference position X, metres
+  std::vector<Tet> tets;           ///< positively oriented: det[X1-X0, X2-X0, X3-X0] > 0
+  std::vector<NodeSet> node_sets;  ///< names are unique among node sets
+  std::vector<FaceSet> face_sets;  ///< names are unique among face sets
 
   [[nodiscard]] std::size_t node_count() const { return nodes.size(); }
   [[nodiscard]] std::size_t tet_count() const { return tets.size(); }

@@ -15,17 +15,18 @@ namespace rhexis::model {
 
 enum class ModelKind { mass_spring, linear, corotated, geometrically_nonlinear, hyperelastic, taylor_hood };
 
-inline constexpr std::array<std::string_view, 6> kModelNames{"mass-spring", "linear", "corotated", "geometrically-nonlinear", "hyperelastic", "taylor-hood"};
+inline constexpr std::array<std::string_view, 6> kModelNames{
+    "mass-spring", "linear", "corotated", "geometrically-nonlinear", "hyperelastic", "taylor-hood"};
 [[nodiscard]] std::string_view name_of(ModelKind kind);
 
 enum class CorotatedTangent { exact, warped };  ///< warped: the paper's R K_e R^T
 
 struct ModelSettings {
   ModelKind kind = ModelKind::hyperelastic;
-  material::Elastic elastic;         ///< read by mass_spring, linear, corotated, geometrically_nonlinear
-  material::MooneyRivlin law;        ///< read by hyperelastic, taylor_hood; c2 = 0 is neo-Hookean
-  double beta = 0.0;                 ///< hyperelastic: the factor of the pressure stabilisation, no unit
-  double initial_lambda = 0.0;       ///< Pa, mixed models
+  material::Elastic elastic;    ///< read by mass_spring, linear, corotated, geometrically_nonlinear
+  material::MooneyRivlin law;   ///< read by hyperelastic, taylor_hood; c2 = 0 is neo-Hookean
+  double beta = 0.0;            ///< hyperelastic: the factor of the pressure stabilisation, no unit
+  double initial_lambda = 0.0;  ///< Pa, mixed models
   CorotatedTangent corotated_tangent = CorotatedTangent::exact;
 };
 

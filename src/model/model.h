@@ -31,10 +31,10 @@ struct Scratch {
 
 /// What an evaluation noticed. NaN and inversion are caught where they are born.
 struct Evaluation {
-  int inverted_tets = 0;          ///< tets with J <= 0
-  TetId worst_tet;                ///< of the smallest J
+  int inverted_tets = 0;  ///< tets with J <= 0
+  TetId worst_tet;        ///< of the smallest J
   double min_J = 1.0;
-  bool finite = true;             ///< false: some tet's force is not finite; worst_tet names the first one
+  bool finite = true;  ///< false: some tet's force is not finite; worst_tet names the first one
 };
 
 /// R = d(stored energy)/d(u, lambda), without loads.
@@ -46,8 +46,8 @@ struct Residual {
 /// Per-tet output; of quantities at quadrature points the volume average.
 struct TetFields {
   std::vector<double> J;
-  std::vector<double> lambda;      ///< of the mixed models; of displacement models the mean Cauchy stress, Pa
-  std::vector<double> stress;      ///< Cauchy, 6 per tet: xx yy zz xy yz xz, Pa
+  std::vector<double> lambda;  ///< of the mixed models; of displacement models the mean Cauchy stress, Pa
+  std::vector<double> stress;  ///< Cauchy, 6 per tet: xx yy zz xy yz xz, Pa
 };
 
 class Model {

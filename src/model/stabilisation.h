@@ -7,8 +7,9 @@
 
 namespace rhexis::model {
 
-/// `beta = "auto"`: (3 kappa - 4 mu) / (16 mu), at least 0; no unit. It makes the least damped spurious pressure exactly as
-/// stiff as a physical pressure wave: (1 + 4 beta) / kappa = 3 / (4 mu). The mesh enters through h_e in the jump term.
+/// `beta = "auto"`: (3 kappa - 4 mu) / (16 mu), at least 0; no unit. It makes the least damped spurious pressure
+/// exactly as stiff as a physical pressure wave: (1 + 4 beta) / kappa = 3 / (4 mu). The mesh enters through h_e in the
+/// jump term.
 [[nodiscard]] double auto_beta(const material::MooneyRivlin& law);
 
 /// Length over which beta smooths a resolved pressure wave, m: the jump term against mass and elastic compliance,

@@ -103,7 +103,7 @@ StepReport Newton::solve(double t, model::State& state) {
 
   model::Evaluation evaluation = evaluate(t, state);
   Norms now = norms(state);
-  double forcing = 1e-2;
+  double forcing = kLoosestForcing;
   int idle = 0;
   for (;; ++step.iterations) {
     step.residual_u = now.u;
@@ -161,9 +161,12 @@ StepReport Newton::solve(double t, model::State& state) {
     const bool falls = next.u < 0.5 * now.u || next.lambda < 0.5 * now.lambda;
     idle = at_rounding && !falls ? idle + 1 : 0;
 
-    // Eisenstat and Walker's second choice keeps iterative solvers from solving a wrong model exactly.
-    const double reduction = ratio(std::max(next.u, next.lambda), std::max(now.u, now.lambda));
-    forcing = std::clamp(0.5 * reduction * reduction, 1e-10, 1e-2);
+    // Eisenstat and Walker's second choice keeps iterative solvers from solving a wrong model exactly; nor need the
+    // last iteration go far below the tolerance.
+    const double worst = std::max(next.u, next.lambda);
+    const double reduction = ratio(worst, std::max(now.u, now.lambda));
+    const double enough = ratio(kForcingSafety * options_.tolerance, worst);
+    forcing = std::clamp(std::max(kForcingSafety * reduction * reduction, enough), kTightestForcing, kLoosestForcing);
 
     std::swap(state, trial_);
     now = next;

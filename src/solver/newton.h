@@ -23,6 +23,10 @@ inline constexpr double kRoundingMove = 1e-15;
 /// The residual may grow by this factor in a full Newton step before the step is shortened: in bending, the first step
 /// turns into stretch, whose residual is large and vanishes in the next.
 inline constexpr double kResidualGrowth = 4.0;
+/// Relative residuals that iterative linear solvers are asked for: between these, and a factor below what is needed.
+inline constexpr double kLoosestForcing = 1e-2;
+inline constexpr double kTightestForcing = 1e-10;
+inline constexpr double kForcingSafety = 0.3;
 /// A step is halved at most this often in the line search.
 inline constexpr int kMaxHalvings = 8;
 
