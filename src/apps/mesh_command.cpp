@@ -1,6 +1,5 @@
 // rhexis mesh info|convert|make: look at a mesh, change its format, generate one.
 
-#include <filesystem>
 #include <map>
 #include <vector>
 
@@ -10,11 +9,11 @@
 #include "mesh/quality.h"
 #include "mesh/surface.h"
 #include "mesh/validate.h"
+#include "scene/units.h"
 
 namespace rhexis::apps {
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 ordered_json range_json(const mesh::Range& range) {
@@ -75,7 +74,12 @@ void print_info(const ordered_json& info) {
   if (info["defects"].empty()) fmt::print("defects         none\n");
 }
 
-const std::map<std::string, double> kUnits{{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}};
+/// "mm" -> 0.001, for CLI11.
+std::map<std::string, double> units() {
+  std::map<std::string, double> metres;
+  for (const scene::LengthUnit& unit : scene::kLengthUnits) metres.emplace(unit.name, unit.metres);
+  return metres;
+}
 
 void add_info(CLI::App& mesh_app, const Common& common, int& code) {
   CLI::App* command = mesh_app.add_subcommand("info", "Counts, sets, size, quality and every defect of a mesh");
@@ -86,7 +90,7 @@ void add_info(CLI::App& mesh_app, const Common& common, int& code) {
   };
   auto options = std::make_shared<Options>();
   command->add_option("file", options->file, "mesh or result file")->required();
-  command->add_option("--unit", options->unit, "of the file")->transform(CLI::CheckedTransformer(kUnits));
+  command->add_option("--unit", options->unit, "of the file")->transform(CLI::CheckedTransformer(units()));
   command->callback([options, &common, &code] {
     const Expected<mesh::MeshFile> file = mesh::read_mesh_file(options->file, {.unit = options->unit});
     if (!file) {
@@ -109,7 +113,7 @@ void add_convert(CLI::App& mesh_app, const Common& common, int& code) {
   auto options = std::make_shared<Options>();
   command->add_option("from", options->from, "file to read")->required();
   command->add_option("to", options->to, "file to write, in metres")->required();
-  command->add_option("--unit", options->unit, "of the file that is read")->transform(CLI::CheckedTransformer(kUnits));
+  command->add_option("--unit", options->unit, "of the file that is read")->transform(CLI::CheckedTransformer(units()));
   command->callback([options, &common, &code] {
     const Expected<mesh::MeshFile> file = mesh::read_mesh_file(options->from, {.unit = options->unit});
     if (!file) {

@@ -36,7 +36,8 @@ Expected<void> ResultFolder::write_result(const mesh::TetMesh& mesh, const std::
 }
 
 Expected<void> ResultFolder::write_summary(const nlohmann::ordered_json& summary) {
-  return write_atomically(path_ / "summary.json", summary.dump(2) + '\n');
+  return write_atomically(path_ / "summary.json",
+                          summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
 }
 
 }  // namespace rhexis::result
