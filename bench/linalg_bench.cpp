@@ -1,4 +1,4 @@
-// Linear solvers on the systems of tests/linalg/box_problem.h: bars of 2n x n x n cubes, small strain, kappa / mu = 25,
+// Linear solvers on the systems of tests/support/box_problem.h: bars of 2n x n x n cubes, small strain, kappa / mu = 25,
 // beta = 100, tolerance 1e-8; docs/solvers.md quotes these numbers.
 //
 //   rhexis_bench --benchmark_filter=Linalg
@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "../tests/linalg/box_problem.h"
+#include "tests/support/box_problem.h"
 #include "base/parallel.h"
 #include "linalg/saddle_solver.h"
 

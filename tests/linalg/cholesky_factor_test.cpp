@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/linalg/box_problem.h"
+#include "tests/support/box_problem.h"
 #include "tests/linalg/random_systems.h"
 
 namespace rhexis::linalg {

@@ -5,7 +5,7 @@
 
 #include "base/parallel.h"
 #include "linalg/saddle_solver.h"
-#include "tests/linalg/box_problem.h"
+#include "tests/support/box_problem.h"
 #include "tests/linalg/random_systems.h"
 
 namespace rhexis::linalg {

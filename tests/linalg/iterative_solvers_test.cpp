@@ -12,7 +12,7 @@
 #include "linalg/patches.h"
 #include "linalg/saddle_residual.h"
 #include "linalg/saddle_solver.h"
-#include "tests/linalg/box_problem.h"
+#include "tests/support/box_problem.h"
 #include "tests/linalg/random_systems.h"
 
 namespace rhexis::linalg {
