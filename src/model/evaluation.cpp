@@ -1,5 +1,7 @@
 #include "model/evaluation.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace rhexis::model {
@@ -20,6 +22,22 @@ Evaluation evaluation_of(const VectorX& J) {
     }
   }
   return out;
+}
+
+TetFields make_tet_fields(std::size_t tets) {
+  TetFields out;
+  out.J.resize(tets);
+  out.lambda.resize(tets);
+  out.stress.resize(6 * tets);
+  return out;
+}
+
+void set_tet(TetFields& fields, std::size_t tet, double J, double lambda, const Mat3& cauchy) {
+  fields.J[tet] = J;
+  fields.lambda[tet] = lambda;
+  const std::array<double, 6> components{cauchy(0, 0), cauchy(1, 1), cauchy(2, 2),
+                                         cauchy(0, 1), cauchy(1, 2), cauchy(0, 2)};
+  std::copy(components.begin(), components.end(), fields.stress.begin() + static_cast<std::ptrdiff_t>(6 * tet));
 }
 
 }  // namespace rhexis::model

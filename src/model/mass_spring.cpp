@@ -31,9 +31,6 @@ constexpr std::size_t kTetGrain = 1024;
 /// which bounds its stiffness by k over this number and lets its force vanish at length zero instead of jumping.
 constexpr double kLeastStretch = 1e-6;
 
-/// In the output alone: |J| of a tet in which stress is referred to the current volume.
-constexpr double kLeastVolumeRatio = 1e-12;
-
 struct Spring {
   std::array<std::int32_t, 2> node;  ///< smaller, larger
   double rest_length = 0.0;          ///< L, m
@@ -117,10 +114,7 @@ class MassSpring final : public Model {
   /// share's stiffness.
   TetFields fields(const State& state) const override {
     const std::size_t tets = tet_springs_.size();
-    TetFields out;
-    out.J.resize(tets);
-    out.lambda.resize(tets);
-    out.stress.resize(6 * tets);
+    TetFields out = make_tet_fields(tets);
     parallel_ranges(tets, kTetGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         Mat3 virial = Mat3::Zero();
@@ -130,12 +124,9 @@ class MassSpring final : public Model {
           const double weight = young_ * s.extension * s.length / (spring.rest_length * spring.rest_length);
           virial += weight * s.direction * s.direction.transpose();
         }
-        out.J[t] = volume_ratio(t, state.u);
-        const Mat3 stress = virial / std::max(std::abs(out.J[t]), kLeastVolumeRatio);
-        out.lambda[t] = stress.trace() / 3.0;
-        const std::array<double, 6> components{stress(0, 0), stress(1, 1), stress(2, 2),
-                                               stress(0, 1), stress(1, 2), stress(0, 2)};
-        std::copy(components.begin(), components.end(), out.stress.begin() + static_cast<std::ptrdiff_t>(6 * t));
+        const double J = volume_ratio(t, state.u);
+        const Mat3 stress = virial / std::max(std::abs(J), kLeastVolumeRatio);
+        set_tet(out, t, J, stress.trace() / 3.0, stress);
       }
     });
     return out;

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 
 #include "base/parallel.h"
+#include "model/evaluation.h"
 
 namespace rhexis::model {
 namespace {
@@ -89,16 +90,10 @@ void P1Model::for_each_tet(const VectorX& u, const std::function<void(std::size_
 
 TetFields P1Model::collect_fields(const VectorX& u,
                                   const std::function<Mat3(std::size_t, const Mat3&, double)>& cauchy) const {
-  TetFields out;
-  out.J.resize(tet_count_);
-  out.lambda.resize(tet_count_);
-  out.stress.resize(6 * tet_count_);
+  TetFields out = make_tet_fields(tet_count_);
   for_each_tet(u, [&](std::size_t tet, const Mat3& F, double J) {
-    const Mat3 s = cauchy(tet, F, J);
-    out.J[tet] = J;
-    out.lambda[tet] = s.trace() / 3.0;
-    const std::array<double, 6> components{s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)};
-    std::copy(components.begin(), components.end(), out.stress.begin() + static_cast<std::ptrdiff_t>(6 * tet));
+    const Mat3 stress = cauchy(tet, F, J);
+    set_tet(out, tet, J, stress.trace() / 3.0, stress);
   });
   return out;
 }

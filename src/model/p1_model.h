@@ -11,9 +11,6 @@
 
 namespace rhexis::model {
 
-/// Output divides by |J| of a tet; not below this.
-inline constexpr double kLeastVolumeRatio = 1e-12;
-
 class P1Model : public Model {
  public:
   [[nodiscard]] const DisplacementSpace& space() const override { return space_; }

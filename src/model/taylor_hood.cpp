@@ -100,17 +100,10 @@ class TaylorHood final : public Model {
   }
 
   TetFields fields(const State& state) const override {
-    TetFields out;
-    out.J.resize(assembly_.tet_count());
-    out.lambda.resize(assembly_.tet_count());
-    out.stress.resize(6 * assembly_.tet_count());
+    TetFields out = make_tet_fields(assembly_.tet_count());
     for_each_tet_alone(state, [&](std::size_t t, const NodeColumns& u, const VertexValues& lambda) {
       const Averages mean = averages(law_, assembly_.geometry(t), u, lambda);
-      out.J[t] = mean.J;
-      out.lambda[t] = lambda.mean();
-      const Mat3& s = mean.stress;
-      const std::array<double, 6> components{s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)};
-      std::copy(components.begin(), components.end(), out.stress.begin() + static_cast<std::ptrdiff_t>(6 * t));
+      set_tet(out, t, mean.J, lambda.mean(), mean.stress);
     });
     return out;
   }
