@@ -1,5 +1,5 @@
-// Linear solvers on the systems of tests/support/box_problem.h: bars of 2n x n x n cubes, small strain, kappa / mu = 25,
-// beta = 100, tolerance 1e-8; docs/solvers.md quotes these numbers.
+// Linear solvers on the systems of tests/support/box_problem.h: bars of 2n x n x n cubes, small strain, kappa / mu =
+// 25, beta = 100, tolerance 1e-8; docs/solvers.md quotes these numbers.
 //
 //   rhexis_bench --benchmark_filter=Linalg
 
@@ -7,9 +7,9 @@
 
 #include <string>
 
-#include "tests/support/box_problem.h"
 #include "base/parallel.h"
 #include "linalg/saddle_solver.h"
+#include "tests/support/box_problem.h"
 
 namespace {
 

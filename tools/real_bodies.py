@@ -107,8 +107,8 @@ def main():
         for model in arguments.models:
             if model == "taylor-hood" and nodes > LARGEST_TAYLOR_HOOD:
                 continue
-            # The saddle system of a large body is where the condensed conjugate gradients pay.
-            linear = "cg" if model == "hyperelastic" and nodes > LARGEST_TAYLOR_HOOD else "direct"
+            # The saddle system is where the condensed conjugate gradients pay.
+            linear = "cg" if model == "hyperelastic" else "direct"
             print(row(name, model, linear, run(arguments.command, arguments.data, arguments.out, name, model, linear)), flush=True)
 
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/box_problem.h"
 #include "tests/linalg/random_systems.h"
+#include "tests/support/box_problem.h"
 
 namespace rhexis::linalg {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "base/parallel.h"
 #include "linalg/saddle_solver.h"
-#include "tests/support/box_problem.h"
 #include "tests/linalg/random_systems.h"
+#include "tests/support/box_problem.h"
 
 namespace rhexis::linalg {
 namespace {

@@ -12,8 +12,8 @@
 #include "linalg/patches.h"
 #include "linalg/saddle_residual.h"
 #include "linalg/saddle_solver.h"
-#include "tests/support/box_problem.h"
 #include "tests/linalg/random_systems.h"
+#include "tests/support/box_problem.h"
 
 namespace rhexis::linalg {
 namespace {
