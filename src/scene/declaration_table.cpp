@@ -186,7 +186,7 @@ Section model() {
 }
 
 Section support() {
-  const auto component = [](std::string name) {
+  const auto component = [](const std::string& name) {
     return Key{.name = name,
                .kind = Kind::length,
                .unit = "m",

@@ -50,6 +50,8 @@ TEST(InstructionSet, KernelObjectsExportTheirTableAlone) {
     ++symbols;
     const char kind = text[17];
     if (std::string("tdrbn").find(kind) != std::string::npos) continue;  // local to its object
+    // A pointer to the C++ runtime, not code; ThreadSanitizer, which sees exceptions off, brings it in.
+    if (kind == 'V' && text.find(" DW.ref.") != std::string::npos) continue;
     EXPECT_NE(text.find("::make_tet_kernels()"), std::string::npos) << text;
     ++tables;
   }

@@ -44,7 +44,7 @@ CellKind kind_of(std::int64_t type) {
     case 34:
     case 36: return {Use::leave_out, "second-order surface cells"};
     case 24: return {Use::not_linear, "a second-order tetrahedron"};
-    case 71: return {Use::not_linear, "a tetrahedron of higher order"};
+    case 71:
     case 78: return {Use::not_linear, "a tetrahedron of higher order"};
     default: return {Use::not_a_tet, nullptr};
   }
