@@ -2,6 +2,7 @@
 
 /// What holds for every generated body, and the measure of preferred diagonals.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -124,6 +125,20 @@ inline std::vector<int> counts_offered(const Error& error) {
     }
   }
   return counts;
+}
+
+/// make(nodes) fails; its error names `nodes` and counts with which make succeeds (of large ones that is believed).
+template <class Make>
+void expect_error_offers_counts(const Make& make, int nodes) {
+  const Expected<TetMesh> mesh = make(nodes);
+  ASSERT_FALSE(mesh.has_value());
+  EXPECT_THAT(mesh.error().what, testing::HasSubstr(std::to_string(nodes)));
+  const std::vector<int> counts = counts_offered(mesh.error());
+  ASSERT_FALSE(counts.empty()) << mesh.error().message();
+  for (const int count : counts)
+    if (count < 100'000) {
+      EXPECT_TRUE(make(count).has_value()) << count;
+    }
 }
 
 }  // namespace rhexis::mesh

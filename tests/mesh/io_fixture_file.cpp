@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "mesh/surface.h"
 #include "tests/mesh/io_support.h"
 
@@ -127,11 +125,7 @@ INSTANTIATE_TEST_SUITE_P(Encodings, VtkFixture,
                                            "vtk_appended_zlib_wide.vtu", "vtk_appended_zlib_big_endian.vtu",
                                            "vtk_appended_zlib_base64.vtu", "vtk42.vtk", "vtk42_binary.vtk", "vtk51.vtk",
                                            "vtk51_binary.vtk", "h5py.vtkhdf", "h5py_chunked.vtkhdf"),
-                         [](const auto& test) {
-                           std::string name = test.param;
-                           std::replace(name.begin(), name.end(), '.', '_');
-                           return name;
-                         });
+                         [](const auto& test) { return with_underscores(test.param); });
 
 }  // namespace
 }  // namespace rhexis::mesh::test

@@ -80,11 +80,7 @@ TEST_P(IoRoundTrip, SameMeshSameBytes) {
 
 INSTANTIATE_TEST_SUITE_P(Formats, IoRoundTrip,
                          ::testing::Values(".msh", ".msh.gz", ".vtu", ".vtu.gz", ".vtkhdf", ".vtkhdf.gz"),
-                         [](const auto& test) {
-                           std::string name = test.param.substr(1);
-                           std::replace(name.begin(), name.end(), '.', '_');
-                           return name;
-                         });
+                         [](const auto& test) { return with_underscores(test.param.substr(1)); });
 
 TEST(IoWrite, UnitIsAppliedToCoordinatesAlone) {
   const TemporaryFolder folder;

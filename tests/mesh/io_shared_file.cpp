@@ -72,11 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, IoShared,
                          ::testing::Values("vessel_solid_401.msh", "vessel_solid_401.vtu", "plate_506_slit.msh",
                                            "plate_506_slit.vtu", "plate_1270.msh", "liver_1k.msh", "kidney_1k.vtu",
                                            "vessel_wall_30k.msh.gz", "plate_20000_slit.msh.gz"),
-                         [](const auto& test) {
-                           std::string name = test.param;
-                           std::replace(name.begin(), name.end(), '.', '_');
-                           return name;
-                         });
+                         [](const auto& test) { return with_underscores(test.param); });
 
 }  // namespace
 }  // namespace rhexis::mesh::test
