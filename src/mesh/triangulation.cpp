@@ -60,6 +60,7 @@ Triangulation Triangulation::fan(std::vector<Point2> rim, const Point2& inside) 
 Triangulation Triangulation::ring(std::vector<Point2> outer, const std::vector<Point2>& inner) {
   const int n_outer = static_cast<int>(outer.size());
   const int n_inner = static_cast<int>(inner.size());
+  RHEXIS_CHECK(n_outer >= 3 && n_inner >= 3, "lines of {} and {} points close no ring", n_outer, n_inner);
   const auto angle = [](const std::vector<Point2>& line, int i) {
     const int n = static_cast<int>(line.size());
     return turned_angle(line[static_cast<std::size_t>(i % n)]) + (i >= n ? 2.0 * std::numbers::pi : 0.0);
