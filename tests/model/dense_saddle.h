@@ -1,6 +1,6 @@
 #pragma once
 
-/// The tangent in the reference state as dense matrices: for tests of its spectra, slow and plain.
+/// The tangent in the reference state, also as dense matrices: for tests of its spectra, slow and plain.
 
 #include <Eigen/Dense>
 #include <vector>
@@ -18,9 +18,8 @@ struct DenseSaddle {
   Eigen::VectorXd volumes;  ///< M, m^3
 };
 
-/// `held` per dof, 3 * node + component.
-inline DenseSaddle dense_saddle(const mesh::TetMesh& mesh, const material::MooneyRivlin& law, double beta,
-                                const std::vector<bool>& held) {
+/// The hyperelastic tangent, sparse.
+inline linalg::SaddleMatrix rest_tangent(const mesh::TetMesh& mesh, const material::MooneyRivlin& law, double beta) {
   model::ModelSettings settings;
   settings.kind = model::ModelKind::hyperelastic;
   settings.law = law;
@@ -29,7 +28,13 @@ inline DenseSaddle dense_saddle(const mesh::TetMesh& mesh, const material::Moone
   const std::unique_ptr<model::Scratch> scratch = body->make_scratch();
   linalg::SaddleMatrix K = body->make_tangent();
   body->tangent(body->initial_state(), *scratch, K);
+  return K;
+}
 
+/// `held` per dof, 3 * node + component.
+inline DenseSaddle dense_saddle(const mesh::TetMesh& mesh, const material::MooneyRivlin& law, double beta,
+                                const std::vector<bool>& held) {
+  const linalg::SaddleMatrix K = rest_tangent(mesh, law, beta);
   const linalg::FreeDofs free = linalg::make_free_dofs(held);
   const Eigen::Index n = free.count();
   const auto m = static_cast<Eigen::Index>(mesh.tet_count());

@@ -48,14 +48,7 @@ VectorX spectrum(int cells, const material::MooneyRivlin& law, double beta, Side
 /// eigenvalue by mu / kappa exactly, which is taken off again.
 double smallest(int cells, const material::MooneyRivlin& law, double beta, Sides sides) {
   const mesh::TetMesh mesh = unit_cube(cells);
-  model::ModelSettings settings;
-  settings.kind = model::ModelKind::hyperelastic;
-  settings.law = law;
-  settings.beta = beta;
-  const std::unique_ptr<model::Model> body = model::make_model(mesh, settings);
-  const std::unique_ptr<model::Scratch> scratch = body->make_scratch();
-  linalg::SaddleMatrix K = body->make_tangent();
-  body->tangent(body->initial_state(), *scratch, K);
+  const linalg::SaddleMatrix K = rest_tangent(mesh, law, beta);
   const std::unique_ptr<linalg::SaddleSolver> solver = linalg::make_saddle_solver("direct", nullptr);
   const linalg::FreeDofs free = linalg::make_free_dofs(held_dofs(mesh, sides));
   EXPECT_TRUE(solver->factor(K, free).ok());
