@@ -58,7 +58,7 @@ BODIES = {
     "vessel_solid_3k": vessel(),
     "vessel_wall_30k": vessel(),
     "kidney_5k": ORGAN.format(young="1.0e4"),
-    "liver_5k": ORGAN.format(young="5.0e3"),
+    "liver_5k": ORGAN.format(young="2.0e4"),
 }
 
 

@@ -1,6 +1,7 @@
 // rhexis solve SCENE [--out DIR] [--set key=value ...]: one equilibrium, load-stepped.
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <vector>
 
@@ -43,19 +44,15 @@ std::string model_text(const scene::Problem& problem) {
                                                  : std::string(problem.model->name());
 }
 
-std::size_t unknowns(const scene::Problem& problem) {
-  return problem.model->space().dof_count() - problem.loading.supports.size() +
-         static_cast<std::size_t>(problem.model->pressure_unknowns());
-}
-
 void print_outcome(const ordered_json& summary, const fs::path& out) {
   const auto& time = summary["time"];
   const std::vector<int> iterations = summary["iterations"];
   int total = 0;
   for (const int count : iterations) total += count;
   if (summary["converged"].get<bool>())
-    fmt::print("converged       {} steps, {} iterations, residual {:.1e}\n", iterations.size(), total,
-               summary["residual"].get<double>());
+    fmt::print("converged       {} steps, {} iterations, residual {:.1e}{}\n", iterations.size(), total,
+               summary["residual"].get<double>(),
+               summary["outcome"] == "stagnated" ? ", the rounding of the arithmetic: above the tolerance" : "");
   else
     fmt::print("NOT converged   {}\n", summary["why"].get<std::string>());
   if (!summary["negative_pivots"].is_null() && summary["negative_pivots"].get<int>() > 0)
@@ -71,6 +68,30 @@ void print_outcome(const ordered_json& summary, const fs::path& out) {
   fmt::print("results         {}\n", (out / "result.vtkhdf").string());
 }
 
+/// Ctrl-C ends a run after the step in flight, with the results so far; pressed twice it ends the program.
+class Interrupt {
+ public:
+  Interrupt() {
+    asked_ = 0;
+    std::signal(SIGINT, [](int) {
+      asked_ = 1;
+      std::signal(SIGINT, SIG_DFL);
+    });
+  }
+  ~Interrupt() { std::signal(SIGINT, SIG_DFL); }
+  Interrupt(const Interrupt&) = delete;
+  Interrupt& operator=(const Interrupt&) = delete;
+  [[nodiscard]] bool asked() const { return asked_ != 0; }
+
+ private:
+  inline static volatile std::sig_atomic_t asked_ = 0;
+};
+
+std::string progress_text(const solver::StepReport& step) {
+  return fmt::format("load {:.4g}: {} iterations, residual {:.1e}{}", step.load, step.iterations,
+                     std::max(step.residual_u, step.residual_lambda), step.message.empty() ? "" : ", " + step.message);
+}
+
 int solve(const SceneOptions& options, const Common& common) {
   const Stopwatch watch;
   Expected<scene::Problem> loaded = load(options);
@@ -81,21 +102,20 @@ int solve(const SceneOptions& options, const Common& common) {
   Expected<result::ResultFolder> folder = result::ResultFolder::open(out);
   if (!folder) return report(folder.error());
   say(common, "{}\nbody            {} nodes, {} tets, {} unknowns\nmodel           {}, {} solver\n", problem.title,
-      problem.mesh.node_count(), problem.mesh.tet_count(), unknowns(problem), model_text(problem),
-      problem.options.linear);
+      problem.mesh.node_count(), problem.mesh.tet_count(), result::unknown_count(*problem.model, problem.loading),
+      model_text(problem), problem.options.linear);
 
   model::State state = problem.model->initial_state();
   Expected<void> written;
   solver::Report outcome;
   {
+    const Interrupt interrupt;
     Progress progress(!common.quiet);
-    const auto observe = [&](const solver::StepReport& step, const model::State& at) {
-      progress.update(step.load, fmt::format("load {:.4g}: {} iterations, residual {:.1e}{}", step.load,
-                                             step.iterations, std::max(step.residual_u, step.residual_lambda),
-                                             step.message.empty() ? "" : ", " + step.message));
-      if (written)
-        written =
-            folder->write_step(step.load, problem.mesh, result::make_fields(problem.mesh, *problem.model, at, {}));
+    const auto observe = [&](const solver::StepReport& step, const model::State& at, const VectorX& reaction) {
+      progress.update(step.load, progress_text(step));
+      written =
+          folder->write_step(step.load, problem.mesh, result::make_fields(problem.mesh, *problem.model, at, reaction));
+      return written.has_value() && !interrupt.asked();
     };
     outcome = solver::solve_equilibrium(*problem.model, problem.loading, problem.options, state, observe);
   }
@@ -113,7 +133,10 @@ int solve(const SceneOptions& options, const Common& common) {
   const ordered_json summary = result::make_summary(run, problem.mesh, *problem.model, problem.loading, state, outcome,
                                                     {.read = read_seconds, .total = watch.seconds()});
   if (written) written = folder->write_summary(summary);
-  if (!written) return report(written.error());
+  if (!written) {
+    report(written.error());
+    return kFailedComputation;  // the input was good: the disk filled up, or the folder went away
+  }
 
   if (common.json) print_json(summary);
   if (!common.json && !common.quiet) print_outcome(summary, out);
@@ -130,7 +153,7 @@ int check(const SceneOptions& options, const Common& common) {
                           {"model", problem.model->name()},
                           {"nodes", problem.mesh.node_count()},
                           {"tets", problem.mesh.tet_count()},
-                          {"unknowns", unknowns(problem)},
+                          {"unknowns", result::unknown_count(*problem.model, problem.loading)},
                           {"held", problem.loading.supports.size()},
                           {"dead_force", problem.loading.dead_force.norm()},
                           {"pressures", problem.loading.pressures.size()},
@@ -147,7 +170,7 @@ int check(const SceneOptions& options, const Common& common) {
   say(common, "body            {} nodes, {} tets, {:.4g} m^3\n", problem.mesh.node_count(), problem.mesh.tet_count(),
       mesh::total_volume(problem.mesh));
   say(common, "model           {}: {} unknowns, {} displacements held, {:.1f} MB before factorisation\n",
-      model_text(problem), unknowns(problem), problem.loading.supports.size(),
+      model_text(problem), result::unknown_count(*problem.model, problem.loading), problem.loading.supports.size(),
       static_cast<double>(problem.model->memory_bytes()) * 1e-6);
   say(common, "would solve     {} load steps, {} solver, tolerance {:g}\n", problem.options.steps,
       problem.options.linear, problem.options.tolerance);
@@ -158,7 +181,9 @@ int check(const SceneOptions& options, const Common& common) {
 std::shared_ptr<SceneOptions> add_scene_options(CLI::App& command) {
   auto options = std::make_shared<SceneOptions>();
   command.add_option("scene", options->scene, "scene file (docs/scene.md)")->required();
-  command.add_option("--set", options->overrides, "override a value of the scene: key=value, as often as wanted")
+  command.add_option("--set", options->overrides, "override a value of the scene, as often as wanted")
+      ->type_name("KEY=VALUE")
+
       ->expected(1)
       ->take_all();
   return options;

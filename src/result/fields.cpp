@@ -25,6 +25,16 @@ Field node_field(std::string name, const VectorX& values, std::size_t count) {
   return {std::move(name), Centering::point, 3, std::vector<double>(values.data(), values.data() + 3 * count)};
 }
 
+/// Forces at the vertices alone: a node in the middle of an edge hands half of its force to each end, which keeps the
+/// total force and moment.
+VectorX on_vertices(const model::DisplacementSpace& space, VectorX force) {
+  const std::size_t vertices = space.node_count() - space.edges.size();
+  for (std::size_t e = 0; e < space.edges.size(); ++e)
+    for (const NodeId end : space.edges[e])
+      force.segment<3>(3 * end.value()) += 0.5 * force.segment<3>(static_cast<Eigen::Index>(3 * (vertices + e)));
+  return force;
+}
+
 }  // namespace
 
 std::vector<Field> make_fields(const mesh::TetMesh& mesh, const model::Model& model, const model::State& state,
@@ -45,7 +55,8 @@ std::vector<Field> make_fields(const mesh::TetMesh& mesh, const model::Model& mo
 
   std::vector<Field> fields;
   fields.push_back(node_field("displacement", state.u, mesh.node_count()));
-  if (reaction.size() > 0) fields.push_back(node_field("reaction", reaction, mesh.node_count()));
+  if (reaction.size() > 0)
+    fields.push_back(node_field("reaction", on_vertices(model.space(), reaction), mesh.node_count()));
   if (model.pressure_at_vertices())
     fields.push_back({"lambda", Centering::point, 1, std::vector<double>(state.lambda.begin(), state.lambda.end())});
   fields.push_back({"lambda", Centering::cell, 1, tets.lambda});

@@ -20,6 +20,8 @@ Expected<ResultFolder> ResultFolder::open(const fs::path& path) {
     const std::string name = entry.path().filename().string();
     if (name.starts_with("step_") && name.ends_with(".vtu")) fs::remove(entry.path(), code);
   }
+  // An empty series: a run whose first step fails leaves one too, and a folder that cannot be written to is known now.
+  if (const Expected<void> written = mesh::write_series(path / "steps.pvd", {}); !written) return fail(written.error());
   return ResultFolder(path);
 }
 

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 
+#include <cholmod.h>
+#include <dmumps_c.h>
 #include <fmt/format.h>
+#include <hdf5.h>
 #include <sys/resource.h>
+#include <tbb/version.h>
 #include <Eigen/Core>
 
 #include "result/fields.h"
@@ -45,14 +49,14 @@ ordered_json make_summary(const RunDescription& run, const mesh::TetMesh& mesh, 
   summary["linear"] = run.linear;
   if (run.model == "hyperelastic") summary["beta"] = run.beta;
   summary["converged"] = report.converged();
+  summary["outcome"] = solver::name_of(report.outcome);
   summary["why"] = report.why;
   summary["load"] = report.load;
   summary["iterations"] = iterations;
   summary["residual"] = std::max(report.residual_u, report.residual_lambda);
   summary["nodes"] = mesh.node_count();
   summary["tets"] = mesh.tet_count();
-  summary["unknowns"] =
-      model.space().dof_count() - loading.supports.size() + static_cast<std::size_t>(model.pressure_unknowns());
+  summary["unknowns"] = unknown_count(model, loading);
   summary["negative_pivots"] = report.negative_pivots ? ordered_json(*report.negative_pivots) : ordered_json(nullptr);
   summary["volume_ratio"] = measures.volume_ratio;
   summary["inverted_tets"] = measures.inverted_tets;
@@ -70,10 +74,18 @@ ordered_json make_summary(const RunDescription& run, const mesh::TetMesh& mesh, 
   return summary;
 }
 
+std::size_t unknown_count(const model::Model& model, const model::Loading& loading) {
+  return model.space().dof_count() - loading.supports.size() + static_cast<std::size_t>(model.pressure_unknowns());
+}
+
 ordered_json versions() {
   return {{"rhexis", RHEXIS_VERSION},
           {"compiler", __VERSION__},
-          {"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)}};
+          {"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+          {"cholmod", fmt::format("{}.{}.{}", CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION)},
+          {"mumps", MUMPS_VERSION},
+          {"hdf5", fmt::format("{}.{}.{}", H5_VERS_MAJOR, H5_VERS_MINOR, H5_VERS_RELEASE)},
+          {"tbb", TBB_VERSION_STRING}};
 }
 
 std::size_t peak_memory_bytes() {

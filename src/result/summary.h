@@ -30,6 +30,9 @@ struct RunDescription {
   std::vector<std::string> warnings;
 };
 
+/// Unknowns that are solved for: free displacements and pressures.
+[[nodiscard]] std::size_t unknown_count(const model::Model& model, const model::Loading& loading);
+
 /// A number that is not finite becomes null: JSON has no NaN.
 [[nodiscard]] nlohmann::ordered_json make_summary(const RunDescription& run, const mesh::TetMesh& mesh,
                                                   const model::Model& model, const model::Loading& loading,

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/vec.h"
@@ -22,7 +23,10 @@ enum class Outcome {
   inverted,       ///< a tet of a law that has no answer there reached J <= 0
   not_finite,     ///< a force became NaN or infinite
   linear_solver,  ///< the linear system could not be solved; the message says why
+  stopped,        ///< the observer asked for it
 };
+/// "converged", "stagnated", ...: the word of the summary.
+[[nodiscard]] std::string_view name_of(Outcome outcome);
 [[nodiscard]] constexpr bool is_success(Outcome outcome) {
   return outcome == Outcome::converged || outcome == Outcome::stagnated;
 }
@@ -35,6 +39,7 @@ struct StepReport {
   double residual_u = 0.0;       ///< relative, at the end
   double residual_lambda = 0.0;  ///< relative, at the end
   std::string message;           ///< one line when something is to be said
+  bool smaller_may_help = true;  ///< false: the failure has nothing to do with the size of the step
 };
 
 struct Report {
@@ -53,8 +58,9 @@ struct Report {
   [[nodiscard]] bool converged() const { return is_success(outcome); }
 };
 
-/// Called after every accepted step; for progress and for results per step.
-using StepObserver = std::function<void(const StepReport&, const model::State&)>;
+/// Called after every accepted step, for progress and for results per step, with the force of the supports on the body
+/// (N, 3 per displacement node). Returning false stops the run there.
+using StepObserver = std::function<bool(const StepReport&, const model::State&, const VectorX& reaction)>;
 
 /// Starts from `state` (the model's initial_state, or any other) and leaves the last converged one in it.
 Report solve_equilibrium(const model::Model& model, const model::Loading& loading, const Options& options,

@@ -17,8 +17,10 @@ linalg::FreeDofs free_dofs_of(const model::Model& model, const model::Loading& l
   return linalg::make_free_dofs(held);
 }
 
+/// 0 / 0 is 0: nothing is wrong with a body on which nothing acts.
 double ratio(double value, double scale) {
-  return value == 0.0 ? 0.0 : value / std::max(scale, std::numeric_limits<double>::min());
+  if (value == 0.0) return 0.0;
+  return scale > 0.0 ? value / scale : std::numeric_limits<double>::infinity();
 }
 
 std::string tet_name(TetId tet) { return tet.valid() ? fmt::format("tet {}", tet.value()) : std::string("a tet"); }
@@ -54,13 +56,10 @@ model::Evaluation Newton::evaluate(double t, const model::State& state) {
 }
 
 Newton::Norms Newton::norms(const model::State& state) const {
-  double free_square = 0.0;
-  for (const std::int32_t dof : free_.dof) free_square += residual_.u[dof] * residual_.u[dof];
   Norms norms;
-  norms.u = ratio(std::sqrt(free_square), std::max(internal_.norm(), external_.norm()));
+  norms.force = free_residual();
+  norms.u = ratio(norms.force, std::max(internal_.norm(), external_.norm()));
   norms.lambda = residual_.lambda.size() == 0 ? 0.0 : ratio(residual_.lambda.norm(), model_.volume_change_norm(state));
-  // The merit compares states of one step with each other; the absolute residuals do, the changing scales would not.
-  norms.merit = free_square;
   return norms;
 }
 
@@ -113,7 +112,10 @@ StepReport Newton::solve(double t, model::State& state) {
       step.message = fmt::format("the force of {} is not finite", tet_name(evaluation.worst_tet));
       return step;
     }
-    if (held_in_place && now.u <= options_.tolerance && now.lambda <= options_.tolerance) return step;
+    // A step has at least one iteration: a small one starts below the tolerance, and the load would move without the
+    // body.
+    const bool within = now.u <= options_.tolerance && now.lambda <= options_.tolerance;
+    if (held_in_place && within && step.iterations > 0) return step;
     if (step.iterations == options_.max_iterations) {
       step.outcome = Outcome::too_many_iterations;
       step.message = fmt::format("no equilibrium after {} iterations, relative residual {:.1e}", step.iterations,
@@ -126,6 +128,7 @@ StepReport Newton::solve(double t, model::State& state) {
     if (!linear.ok()) {
       step.outcome = Outcome::linear_solver;
       step.message = linear.message;
+      step.smaller_may_help = linear.outcome != linalg::LinearOutcome::not_supported;
       return step;
     }
 
@@ -139,14 +142,13 @@ StepReport Newton::solve(double t, model::State& state) {
       evaluation = evaluate(t, trial_);
       next = norms(trial_);
       const bool admissible = evaluation.finite && (model_.allows_inversion() || evaluation.inverted_tets == 0);
-      const bool small_enough = step.iterations == 0 || !held_in_place ||
-                                next.merit <= kResidualGrowth * kResidualGrowth * now.merit ||
+      const bool small_enough = step.iterations == 0 || !held_in_place || next.force <= kResidualGrowth * now.force ||
                                 next.u <= options_.tolerance;
       if (admissible && (small_enough || halving == kMaxHalvings)) break;
       if (halving == kMaxHalvings) {
         step.outcome = evaluation.finite ? Outcome::inverted : Outcome::not_finite;
         step.message = evaluation.finite
-                           ? fmt::format("{} tets turn inside out, {} first (J = {:.3g})", evaluation.inverted_tets,
+                           ? fmt::format("tets turn inside out: {}, {} first (J = {:.3g})", evaluation.inverted_tets,
                                          tet_name(evaluation.worst_tet), evaluation.min_J)
                            : fmt::format("the force of {} is not finite", tet_name(evaluation.worst_tet));
         return step;
@@ -166,7 +168,10 @@ StepReport Newton::solve(double t, model::State& state) {
     const double worst = std::max(next.u, next.lambda);
     const double reduction = ratio(worst, std::max(now.u, now.lambda));
     const double enough = ratio(kForcingSafety * options_.tolerance, worst);
-    forcing = std::clamp(std::max(kForcingSafety * reduction * reduction, enough), kTightestForcing, kLoosestForcing);
+    forcing =
+        !std::isfinite(worst) || !std::isfinite(reduction)
+            ? kLoosestForcing
+            : std::clamp(std::max(kForcingSafety * reduction * reduction, enough), kTightestForcing, kLoosestForcing);
 
     std::swap(state, trial_);
     now = next;
@@ -176,16 +181,32 @@ StepReport Newton::solve(double t, model::State& state) {
     } else {
       held_ *= 1.0 - alpha;
     }
-    if (idle >= 2) {
+    if (idle >= 2 && (worst <= kLargestStagnation || free_residual() <= force_of_rounding())) {
       ++step.iterations;
       step.residual_u = now.u;
       step.residual_lambda = now.lambda;
       step.outcome = Outcome::stagnated;
-      step.message = fmt::format("at rounding: relative residual {:.1e}, above the tolerance {:.1e}",
-                                 std::max(now.u, now.lambda), options_.tolerance);
+      step.message =
+          fmt::format("at rounding: relative residual {:.1e}, above the tolerance {:.1e}", worst, options_.tolerance);
       return step;
     }
   }
+}
+
+double Newton::free_residual() const {
+  double square = 0.0;
+  for (const std::int32_t dof : free_.dof) square += residual_.u[dof] * residual_.u[dof];
+  return std::sqrt(square);
+}
+
+double Newton::force_of_rounding() const {
+  double stiffest = 0.0;
+  const linalg::SymmetricBlockMatrix& A = tangent_.A;
+  for (std::int32_t row = 0; row < A.rows(); ++row) {
+    const auto block = static_cast<std::size_t>(A.pattern->row_start[static_cast<std::size_t>(row) + 1]) - 1;
+    for (const std::size_t c : {0U, 4U, 8U}) stiffest = std::max(stiffest, std::abs(A.values[9 * block + c]));
+  }
+  return stiffest * smallest_move_ * std::sqrt(static_cast<double>(free_.count()));
 }
 
 VectorX Newton::reaction(double t, const model::State& state) {

@@ -20,6 +20,8 @@ namespace rhexis::solver {
 inline constexpr double kRoundingCorrection = 1e-11;
 /// Nor does one below this fraction of the largest coordinate: x = X + u cannot hold it. A few units in the last place.
 inline constexpr double kRoundingMove = 1e-15;
+/// Stagnation above this relative residual is no convergence: the numbers are too far apart in size for the arithmetic.
+inline constexpr double kLargestStagnation = 1e-6;
 /// The residual may grow by this factor in a full Newton step before the step is shortened: in bending, the first step
 /// turns into stretch, whose residual is large and vanishes in the next.
 inline constexpr double kResidualGrowth = 4.0;
@@ -47,15 +49,19 @@ class Newton {
   [[nodiscard]] std::size_t linear_memory_bytes() const { return linear_->memory_bytes(); }
 
  private:
-  /// Relative sizes of the two residuals (section 1.4), and one number that the line search watches.
+  /// Sizes of the two residuals, relative (section 1.4), and of the first as it is, which the line search watches: it
+  /// compares states of one step, between which the scales change.
   struct Norms {
     double u = 0.0;
     double lambda = 0.0;
-    double merit = 0.0;  ///< (|R_u| / force scale)^2 + (|R_lambda| / volume scale)^2 with the scales of the step
+    double force = 0.0;  ///< |R_u| on the free dofs, N
   };
 
   model::Evaluation evaluate(double t, const model::State& state);
   [[nodiscard]] Norms norms(const model::State& state) const;
+  [[nodiscard]] double free_residual() const;
+  /// The residual that moving every node by its last place makes, N: below it there is nothing to converge.
+  [[nodiscard]] double force_of_rounding() const;
   linalg::LinearReport find_direction(double t, const model::State& state, const VectorX& held_increment,
                                       double tolerance);
   void build_tangent(double t, const model::State& state);

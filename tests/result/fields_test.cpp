@@ -6,6 +6,8 @@
 
 #include "mesh/generate.h"
 #include "model/make_model.h"
+#include "solver/equilibrium.h"
+#include "tests/support/bodies.h"
 
 namespace rhexis {
 namespace {
@@ -70,6 +72,31 @@ TEST_F(Fields, PressureJumpOfAnOscillatingState) {
   const double between = 3 * 2 * 2 * (2 - 1) * 0.25;
   const double expected = std::sqrt(4.0 * 8 * cell_faces / (8 * cell_faces + between));
   EXPECT_NEAR(result::measure(mesh_, *psh, state).pressure_jump, expected, 1e-12);
+}
+
+TEST(Reactions, BalanceTheLoadInForceAndMomentInTheFilesOfEveryModel) {
+  const mesh::TetMesh mesh = mesh::make_structured_box(Vec3(0.1, 0.1, 0.2), {2, 2, 4});
+  for (int kind = 0; kind < 6; ++kind) {
+    model::ModelSettings settings;
+    settings.kind = static_cast<model::ModelKind>(kind);
+    settings.elastic = {1e5, 0.45};
+    settings.law = material::to_mooney_rivlin(settings.elastic);
+    settings.beta = 1.0;
+    const auto body = model::make_model(mesh, settings);
+    model::Loading loading = test::no_load(*body);
+    test::clamp(loading, mesh, *body, "-z");
+    const Vec3 force(0.02, -0.05, 0.1);
+    model::add_traction(mesh, body->space(), mesh.find_face_set("+z")->faces, force, loading.dead_force);
+    model::State state = body->initial_state();
+    const solver::Report report = solver::solve_equilibrium(*body, loading, {.tolerance = 1e-10, .steps = 1}, state);
+    ASSERT_TRUE(report.converged()) << body->name() << ": " << report.why;
+    for (const mesh::Field& field : result::make_fields(mesh, *body, state, report.reaction)) {
+      if (field.name != "reaction") continue;
+      Vec3 sum = Vec3::Zero();
+      for (std::size_t n = 0; n < mesh.node_count(); ++n) sum += Eigen::Map<const Vec3>(field.values.data() + 3 * n);
+      EXPECT_LT((sum + force).norm(), 1e-8 * force.norm()) << body->name();
+    }
+  }
 }
 
 }  // namespace

@@ -43,8 +43,10 @@ TEST(Equilibrium, ReportsEveryStepAndBalancesTheLoad) {
   model::State state = body->initial_state();
   std::vector<double> seen;
   const solver::Report report = solver::solve_equilibrium(
-      *body, loading, {.steps = 5}, state,
-      [&](const solver::StepReport& step, const model::State&) { seen.push_back(step.load); });
+      *body, loading, {.steps = 5}, state, [&](const solver::StepReport& step, const model::State&, const VectorX&) {
+        seen.push_back(step.load);
+        return true;
+      });
   ASSERT_TRUE(report.converged()) << report.why;
   EXPECT_EQ(seen.size(), report.steps.size());
   EXPECT_DOUBLE_EQ(seen.back(), 1.0);
@@ -189,6 +191,68 @@ TEST(Equilibrium, FollowerPressureInflatesAClosedCavityInBalance) {
   const solver::Report report = solver::solve_equilibrium(*body, loading, {.tolerance = 1e-11, .steps = 2}, state);
   ASSERT_TRUE(report.converged()) << report.why;
   for (const double lambda : state.lambda) EXPECT_NEAR(lambda, -5e4, 1e-8 * 5e4);
+}
+
+TEST(Equilibrium, TheObserverCanStopTheRun) {
+  const mesh::TetMesh mesh = bar();
+  const auto body = model::make_model(mesh, psh(10));
+  model::State state = body->initial_state();
+  const auto stop_at_once = [](const solver::StepReport&, const model::State&, const VectorX&) { return false; };
+  const solver::Report report =
+      solver::solve_equilibrium(*body, cantilever(mesh, *body, 9810), {.steps = 5}, state, stop_at_once);
+  EXPECT_EQ(report.outcome, solver::Outcome::stopped);
+  EXPECT_FALSE(report.converged());
+  EXPECT_EQ(report.steps.size(), 1u);
+  EXPECT_DOUBLE_EQ(report.load, 0.2);
+}
+
+TEST(Equilibrium, CreepingUpToALimitPointEnds) {
+  // A cube of St. Venant-Kirchhoff pressed together past what the law bears: steps fail, halve, succeed, double and
+  // fail.
+  const mesh::TetMesh mesh = mesh::make_bar({Vec3::Constant(0.01)}, 200).value();
+  model::ModelSettings settings = psh(0);
+  settings.kind = model::ModelKind::mass_spring;
+  const auto body = model::make_model(mesh, settings);
+  model::Loading loading = test::no_load(*body);
+  test::clamp(loading, mesh, *body, "-z");
+  model::add_traction(mesh, body->space(), mesh.find_face_set("+z")->faces, Vec3(0, 0, -1e3), loading.dead_force);
+  model::State state = body->initial_state();
+  const solver::Options options{.steps = 5, .max_iterations = 10, .max_cuts = 4};
+  const solver::Report report = solver::solve_equilibrium(*body, loading, options, state);
+  EXPECT_LE(report.cuts.size(), 5u * 4u + 1u);
+  for (const solver::StepReport& step : report.steps) EXPECT_GE(step.iterations, 1);
+  if (!report.converged()) {
+    EXPECT_THAT(report.why, testing::HasSubstr("at load fraction"));
+  }
+}
+
+TEST(Equilibrium, NumbersTooFarApartAreNoConvergence) {
+  const mesh::TetMesh mesh = bar();
+  const auto body = model::make_model(mesh, psh(10));
+  model::Loading loading = test::no_load(*body);
+  test::clamp(loading, mesh, *body, "-z");
+  test::hold(loading, mesh, *body, "+z", 2, 1e10);
+  model::State state = body->initial_state();
+  const solver::Report report = solver::solve_equilibrium(*body, loading, {.steps = 2, .max_cuts = 2}, state);
+  if (report.converged()) {
+    EXPECT_LT(report.residual_u, 1e-6);
+  }
+}
+
+TEST(Equilibrium, AFreeRimIsRefusedByIterativeSolversWithoutCutting) {
+  const mesh::TetMesh mesh = bar();
+  const auto body = model::make_model(mesh, psh(10));
+  model::Loading loading = test::no_load(*body);
+  test::clamp(loading, mesh, *body, "-z");
+  loading.pressures.push_back(
+      model::make_follower_pressure(mesh, body->space(), mesh.find_face_set("+x")->faces, 100.0, loading.supports));
+  model::State state = body->initial_state();
+  const solver::Report report = solver::solve_equilibrium(*body, loading, {.linear = "cg"}, state);
+  EXPECT_EQ(report.outcome, solver::Outcome::linear_solver);
+  EXPECT_EQ(report.cuts.size(), 1u);
+  EXPECT_THAT(report.why, testing::HasSubstr("free rim"));
+  state = body->initial_state();
+  EXPECT_TRUE(solver::solve_equilibrium(*body, loading, {.linear = "direct"}, state).converged());
 }
 
 }  // namespace
