@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/vec.h"
 
 namespace rhexis::apps {
 
@@ -35,6 +36,8 @@ void say(const Common& common, fmt::format_string<Args...> format, Args&&... arg
 
 /// The one thing that --json prints.
 void print_json(const nlohmann::ordered_json& json);
+
+[[nodiscard]] inline nlohmann::ordered_json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 /// Each adds its subcommand to the app and writes its exit code to `code` when it has run.
 void add_solve(CLI::App& app, const Common& common, int& code);

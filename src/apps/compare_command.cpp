@@ -13,7 +13,10 @@ namespace {
 using nlohmann::ordered_json;
 using result::Comparison;
 
-ordered_json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+struct Options {
+  std::string reference;
+  std::vector<std::string> others;
+};
 
 ordered_json to_json(const std::string& name, const Comparison& comparison) {
   ordered_json json{{"result", name}, {"fields", ordered_json::array()}};
@@ -45,33 +48,35 @@ void print_fields(const Comparison& comparison) {
   for (const std::string& name : comparison.only_in_one) fmt::print("{} is in one of them only\n", name);
 }
 
-void print_overview(const std::vector<std::string>& names, const std::vector<Comparison>& comparisons) {
+void print_overview(const Options& options, const std::vector<Comparison>& comparisons) {
   std::size_t width = 0;
-  for (const std::string& name : names) width = std::max(width, name.size());
-  fmt::print("difference of the displacement from {}, percent of the body's box\n", names.front());
+  for (const std::string& name : options.others) width = std::max(width, name.size());
+  fmt::print("difference of the displacement from {}, percent of the body's box\n", options.reference);
   fmt::print("{:<{}}  {:>7} {:>7} {:>7}   {:>7} {:>7} {:>7}\n", "", width, "mean x", "y", "z", "max x", "y", "z");
   for (std::size_t i = 0; i < comparisons.size(); ++i) {
     const result::BoxDifference& box = comparisons[i].displacement;
-    fmt::print("{:<{}}  {:7.3f} {:7.3f} {:7.3f}   {:7.3f} {:7.3f} {:7.3f}\n", names[i + 1], width, box.mean.x(),
+    fmt::print("{:<{}}  {:7.3f} {:7.3f} {:7.3f}   {:7.3f} {:7.3f} {:7.3f}\n", options.others[i], width, box.mean.x(),
                box.mean.y(), box.mean.z(), box.largest.x(), box.largest.y(), box.largest.z());
   }
 }
 
-int compare(const std::vector<std::string>& names, const Common& common) {
+int compare(const Options& options, const Common& common) {
   std::vector<Comparison> comparisons;
-  ordered_json json{{"reference", names.front()}, {"comparisons", ordered_json::array()}};
-  for (std::size_t i = 1; i < names.size(); ++i) {
-    Expected<Comparison> comparison = result::compare_results(names.front(), names[i]);
+  ordered_json json{{"reference", options.reference}, {"comparisons", ordered_json::array()}};
+  for (const std::string& other : options.others) {
+    Expected<Comparison> comparison = result::compare_results(options.reference, other);
     if (!comparison) return report(comparison.error());
-    json["comparisons"].push_back(to_json(names[i], *comparison));
+    json["comparisons"].push_back(to_json(other, *comparison));
     comparisons.push_back(std::move(*comparison));
   }
   if (common.json) {
     print_json(json);
+  } else if (common.quiet) {
+    return kDone;
   } else if (comparisons.size() == 1) {
     print_fields(comparisons.front());
   } else {
-    print_overview(names, comparisons);
+    print_overview(options, comparisons);
   }
   return kDone;
 }
@@ -81,14 +86,12 @@ int compare(const std::vector<std::string>& names, const Common& common) {
 void add_compare(CLI::App& app, const Common& common, int& code) {
   CLI::App* command = app.add_subcommand("compare", "How far two results on the same mesh are apart, field by field");
   command->footer("Example: rhexis compare out/vessel out/vessel-linear");
-  auto names = std::make_shared<std::vector<std::string>>();
-  command
-      ->add_option(
-          "results", *names,
-          "result files, or folders that `rhexis solve` wrote; the first is the reference, several others give a table")
+  auto options = std::make_shared<Options>();
+  command->add_option("reference", options->reference, "result file, or folder that `rhexis solve` wrote")->required();
+  command->add_option("other", options->others, "what to compare with it; several give a table")
       ->required()
-      ->expected(2, 1000);
-  command->callback([names, &common, &code] { code = compare(*names, common); });
+      ->expected(-1);
+  command->callback([options, &common, &code] { code = compare(*options, common); });
 }
 
 }  // namespace rhexis::apps

@@ -5,12 +5,11 @@
 //   rhexis compare out/a out/b
 //   rhexis mesh info vessel.msh
 
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 
 #include "apps/command.h"
-#include "base/nearest_name.h"
+#include "apps/command_words.h"
 
 namespace rhexis::apps {
 
@@ -26,19 +25,12 @@ void print_json(const nlohmann::ordered_json& json) {
 
 namespace {
 
-/// The first word that is no option has to be a command; CLI11 would only say that one is required. Empty when it is.
-std::string unknown_command(const CLI::App& app, int argc, char** argv) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word.starts_with('-')) continue;
-    if (std::find(names.begin(), names.end(), word) != names.end()) return {};
-    const std::string near = nearest_name(word, names);
-    return fmt::format("unknown command '{}' ({})", word,
-                       near.empty() ? "see `rhexis --help`" : "did you mean '" + near + "'?");
+/// What all commands have in common stands in the help of each.
+void mention_common_options(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands({})) {
+    command->footer(command->get_footer() + "\nAlso: --json, -q, --quiet, -v, --verbose (`rhexis --help`)");
+    mention_common_options(*command);
   }
-  return {};
 }
 
 int run(int argc, char** argv) {
@@ -46,12 +38,13 @@ int run(int argc, char** argv) {
       "Soft tissue that bends, bulges and tears: finite elements on linear tetrahedra, in numbers one can check.",
       "rhexis");
   app.set_version_flag("--version", std::string("rhexis ") + RHEXIS_VERSION);
+  app.footer("Example: rhexis solve scenes/vessel.toml --out out/vessel");
   app.require_subcommand(1);
   app.fallthrough();
   Common common;
   app.add_flag("--json", common.json, "print the summary as JSON on stdout, and nothing else there");
   app.add_flag("-v,--verbose", common.verbose, "say more");
-  app.add_flag("-q,--quiet", common.quiet, "say nothing but errors");
+  app.add_flag("-q,--quiet", common.quiet, "nothing on stdout but what --json asks for; errors only on stderr");
 
   int code = kDone;
   add_solve(app, common, code);
@@ -59,12 +52,14 @@ int run(int argc, char** argv) {
   add_compare(app, common, code);
   add_mesh(app, common, code);
   add_scene_reference(app, code);
+  mention_common_options(app);
 
   app.parse_complete_callback([&] {
     set_up_log(common.verbose ? Verbosity::verbose : common.quiet ? Verbosity::quiet : Verbosity::normal);
   });
-  if (const std::string unknown = unknown_command(app, argc, argv); !unknown.empty()) {
-    fmt::print(stderr, "rhexis: {}\n", unknown);
+  const CommandWords words = read_command_words(app, argc, argv);
+  if (!words.wrong.empty()) {
+    fmt::print(stderr, "rhexis: {}\n", words.wrong);
     return kBadInput;
   }
   try {
@@ -72,7 +67,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
       return app.exit(error);  // --help, --version
-    fmt::print(stderr, "rhexis: {} (see `rhexis --help`)\n", error.what());
+    fmt::print(stderr, "rhexis: {} (see `{} --help`)\n", error.what(), words.command);
     return kBadInput;
   }
   return code;

@@ -1,6 +1,5 @@
 // rhexis mesh info|convert|make: look at a mesh, change its format, generate one.
 
-#include <map>
 #include <vector>
 
 #include "apps/command.h"
@@ -19,14 +18,12 @@ using nlohmann::ordered_json;
 ordered_json range_json(const mesh::Range& range) {
   return {{"min", range.min}, {"mean", range.mean}, {"max", range.max}};
 }
-ordered_json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 ordered_json info_json(const mesh::MeshFile& file) {
   const mesh::TetMesh& mesh = file.mesh;
   const std::vector<mesh::Defect> defects = mesh::find_defects(mesh);
   const mesh::BoundingBox box = mesh::bounding_box(mesh);
   ordered_json json{{"nodes", mesh.node_count()}, {"tets", mesh.tet_count()}};
-  // Indices out of range would make the measures below read outside the mesh; readers refuse them.
   const mesh::FaceTable faces = mesh::find_faces(mesh);
   json["boundary_triangles"] = faces.boundary.size();
   json["volume"] = mesh::total_volume(mesh);
@@ -74,11 +71,25 @@ void print_info(const ordered_json& info) {
   if (info["defects"].empty()) fmt::print("defects         none\n");
 }
 
-/// "mm" -> 0.001, for CLI11.
-std::map<std::string, double> units() {
-  std::map<std::string, double> metres;
-  for (const scene::LengthUnit& unit : scene::kLengthUnits) metres.emplace(unit.name, unit.metres);
-  return metres;
+/// The unit's name goes into `unit`, which says what stands for none given.
+void add_unit_option(CLI::App& command, std::string& unit) {
+  const std::string names = fmt::format("{}", fmt::join(scene::unit_names(), ", "));
+  command.add_option("--unit", unit, "length unit of the file that is read, one of " + names)
+      ->option_text("UNIT=" + unit)
+      ->check([names](const std::string& name) {
+        return scene::metres_per(name) > 0.0 ? std::string()
+                                             : fmt::format("'{}' is no length unit (one of {})", name, names);
+      });
+}
+
+/// Writes the mesh and says so. Returns the exit code.
+int write_mesh(const std::string& path, const mesh::TetMesh& mesh, const std::vector<mesh::Field>& fields,
+               const Common& common) {
+  const Expected<void> written = mesh::write_mesh_file(path, mesh, fields);
+  if (!written) return report(written.error());
+  say(common, "{}: {} nodes, {} tets\n", path, mesh.node_count(), mesh.tet_count());
+  if (common.json) print_json({{"file", path}, {"nodes", mesh.node_count()}, {"tets", mesh.tet_count()}});
+  return kDone;
 }
 
 void add_info(CLI::App& mesh_app, const Common& common, int& code) {
@@ -86,19 +97,23 @@ void add_info(CLI::App& mesh_app, const Common& common, int& code) {
   command->footer("Example: rhexis mesh info vessel.msh --unit mm");
   struct Options {
     std::string file;
-    double unit = 1.0;
+    std::string unit = "m";
   };
   auto options = std::make_shared<Options>();
   command->add_option("file", options->file, "mesh or result file")->required();
-  command->add_option("--unit", options->unit, "of the file")->transform(CLI::CheckedTransformer(units()));
+  add_unit_option(*command, options->unit);
   command->callback([options, &common, &code] {
-    const Expected<mesh::MeshFile> file = mesh::read_mesh_file(options->file, {.unit = options->unit});
+    const Expected<mesh::MeshFile> file =
+        mesh::read_mesh_file(options->file, {.unit = scene::metres_per(options->unit)});
     if (!file) {
       code = report(file.error());
       return;
     }
     const ordered_json info = info_json(*file);
-    common.json ? print_json(info) : print_info(info);
+    if (common.json)
+      print_json(info);
+    else if (!common.quiet)
+      print_info(info);
   });
 }
 
@@ -108,27 +123,21 @@ void add_convert(CLI::App& mesh_app, const Common& common, int& code) {
   command->footer("Example: rhexis mesh convert kidney.msh.gz kidney.vtu");
   struct Options {
     std::string from, to;
-    double unit = 1.0;
+    std::string unit = "m";
   };
   auto options = std::make_shared<Options>();
   command->add_option("from", options->from, "file to read")->required();
   command->add_option("to", options->to, "file to write, in metres")->required();
-  command->add_option("--unit", options->unit, "of the file that is read")->transform(CLI::CheckedTransformer(units()));
+  add_unit_option(*command, options->unit);
   command->callback([options, &common, &code] {
-    const Expected<mesh::MeshFile> file = mesh::read_mesh_file(options->from, {.unit = options->unit});
+    const Expected<mesh::MeshFile> file =
+        mesh::read_mesh_file(options->from, {.unit = scene::metres_per(options->unit)});
     if (!file) {
       code = report(file.error());
       return;
     }
     for (const std::string& note : file->notes) spdlog::info("{}", note);
-    const Expected<void> written = mesh::write_mesh_file(options->to, file->mesh, file->fields);
-    if (!written) {
-      code = report(written.error());
-      return;
-    }
-    say(common, "{}: {} nodes, {} tets\n", options->to, file->mesh.node_count(), file->mesh.tet_count());
-    if (common.json)
-      print_json({{"file", options->to}, {"nodes", file->mesh.node_count()}, {"tets", file->mesh.tet_count()}});
+    code = write_mesh(options->to, file->mesh, file->fields, common);
   });
 }
 
@@ -147,8 +156,8 @@ void add_shape(CLI::App& make_app, const std::string& name, const std::string& d
   command->add_option("out", options->out, "file to write")->required();
   command->add_option("--nodes", options->nodes, "number of nodes, met within 2%")->required();
   if (name == "tube") {
-    command->add_option("--radius", options->tube.radius, "outer radius, m");
-    command->add_option("--length", options->tube.length, "of the centre line, m");
+    command->add_option("--radius", options->tube.radius, "outer radius, m")->required();
+    command->add_option("--length", options->tube.length, "of the centre line, m")->required();
     command->add_option("--wall", options->tube.wall, "thickness of the wall, m; 0 for a solid rod");
     command->add_option("--bend", options->tube.bend, "degrees by which the centre line turns");
   } else {
@@ -162,17 +171,7 @@ void add_shape(CLI::App& make_app, const std::string& name, const std::string& d
     const Expected<mesh::TetMesh> made = name == "tube"    ? mesh::make_tube(options->tube, options->nodes)
                                          : name == "plate" ? mesh::make_plate(box, options->nodes)
                                                            : mesh::make_bar(box, options->nodes);
-    if (!made) {
-      code = report(made.error());
-      return;
-    }
-    const Expected<void> written = mesh::write_mesh_file(options->out, *made);
-    if (!written) {
-      code = report(written.error());
-      return;
-    }
-    say(common, "{}: {} nodes, {} tets\n", options->out, made->node_count(), made->tet_count());
-    if (common.json) print_json({{"file", options->out}, {"nodes", made->node_count()}, {"tets", made->tet_count()}});
+    code = made ? write_mesh(options->out, *made, {}, common) : report(made.error());
   });
 }
 
@@ -180,11 +179,13 @@ void add_shape(CLI::App& make_app, const std::string& name, const std::string& d
 
 void add_mesh(CLI::App& app, const Common& common, int& code) {
   CLI::App* command = app.add_subcommand("mesh", "Look at a mesh, convert it, generate one");
+  command->footer("Example: rhexis mesh info vessel.msh --unit mm");
   command->require_subcommand(1);
   command->fallthrough();
   add_info(*command, common, code);
   add_convert(*command, common, code);
   CLI::App* make = command->add_subcommand("make", "Generate a plate, bar, tube or cube");
+  make->footer("Example: rhexis mesh make plate plate.msh --size 0.24 0.24 0.01 --nodes 506");
   make->require_subcommand(1);
   make->fallthrough();
   add_shape(*make, "plate", "A plate, thin in z", "plate.msh --size 0.24 0.24 0.01 --nodes 506", common, code);

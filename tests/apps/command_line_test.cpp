@@ -32,27 +32,87 @@ TEST_P(CommandLine, MisuseIsOneLineAndExitCode2) {
 }
 INSTANTIATE_TEST_SUITE_P(
     Misuses, CommandLine,
-    testing::Values(Misuse{"NoCommand", "", "subcommand"}, Misuse{"UnknownCommand", "slove x.toml", "slove"},
-                    Misuse{"NoScene", "solve", "scene is required"},
-                    Misuse{"NoSuchScene", "solve none.toml", "none.toml"},
-                    Misuse{"UnknownOption", "solve scenes/bar.toml --frobnicate", "frobnicate"},
-                    Misuse{"SetWithoutValue", "check scenes/bar.toml --set model.beta", "model.beta"},
-                    Misuse{"SetOfAnUnknownKey", "check scenes/bar.toml --set model.bata=1", "beta"},
-                    Misuse{"CompareOne", "compare out", "results"},
-                    Misuse{"CompareNothing", "compare none1 none2", "none1"}, Misuse{"MeshAlone", "mesh", "subcommand"},
-                    Misuse{"MeshOfNoFormat", "mesh info README.md", ".msh"},
-                    Misuse{"ConvertToNoFormat", "mesh convert none.msh none.obj", "none.msh"},
-                    Misuse{"MakeNoNodes", "mesh make plate p.msh --size 1 1 0.1 --nodes 0", "nodes"},
-                    Misuse{"MakeFlatPlate", "mesh make plate p.msh --size 1 1 0 --nodes 100", "size"},
-                    Misuse{"UnknownUnit", "mesh info none.msh --unit parsec", "parsec"}),
+    testing::Values(
+        Misuse{"NoCommand", "", "`rhexis` needs a command: solve, check"},
+        Misuse{"UnknownCommand", "slove x.toml", "unknown command 'slove' (did you mean 'solve'?)"},
+        Misuse{"UnknownMeshCommand", "mesh mak cube", "unknown command 'mak' (did you mean 'make'?)"},
+        Misuse{"UnknownShape", "mesh make sphere x.msh", "unknown command 'sphere' (see `rhexis mesh make --help`)"},
+        Misuse{"CommandOfALaterVersion", "tear scenes/bar.toml", "'tear' is not in this version"},
+        Misuse{"LaterOnlyAtTheTop", "mesh tear", "unknown command 'tear'"},
+        Misuse{"UnknownOptionAlone", "-x", "unknown option '-x' (see `rhexis --help`)"},
+        Misuse{"OptionBeforeCommand", "--jsn solve scenes/bar.toml", "(did you mean '--json'?)"},
+        Misuse{"OptionWithATypo", "solve scenes/bar.toml --ot x", "unknown option '--ot' (did you mean '--out'?)"},
+        Misuse{"OptionOfACommandAbove", "mesh make cube --quite", "(did you mean '--quiet'?)"},
+        Misuse{"OptionWithEquals", "solve scenes/bar.toml --uot=x", "unknown option '--uot' (did you mean"},
+        Misuse{"OptionWithOneDash", "solve scenes/bar.toml -out x", "unknown option '-out' (did you mean"},
+        Misuse{"NoScene", "solve", "scene is required (see `rhexis solve --help`)"},
+        Misuse{"NoSuchScene", "solve none.toml", "none.toml"},
+        Misuse{"UnknownOption", "solve scenes/bar.toml --frobnicate",
+               "unknown option '--frobnicate' (see `rhexis solve --help`)"},
+        Misuse{"SetWithoutValue", "check scenes/bar.toml --set model.beta", "model.beta"},
+        Misuse{"SetOfAnUnknownKey", "check scenes/bar.toml --set model.bata=1", "beta"},
+        Misuse{"CompareOne", "compare out", "other is required"},
+        Misuse{"CompareNothing", "compare none1 none2", "none1"},
+        Misuse{"MeshAlone", "mesh", "`rhexis mesh` needs a command: info, convert, make"},
+        Misuse{"MeshOfNoFormat", "mesh info README.md", ".msh"},
+        Misuse{"ConvertToNoFormat", "mesh convert none.msh none.obj", "none.msh"},
+        Misuse{"MakeNoNodes", "mesh make plate p.msh --size 1 1 0.1 --nodes 0", "nodes"},
+        Misuse{"MakeFlatPlate", "mesh make plate p.msh --size 1 1 0 --nodes 100", "size"},
+        Misuse{"TubeWithoutRadius", "mesh make tube x.msh --length 0.04 --nodes 400", "--radius is required"},
+        Misuse{"TubeWithoutLength", "mesh make tube x.msh --radius 0.005 --nodes 400", "--length is required"},
+        Misuse{"NegativeNumberIsAValue", "mesh make tube x.msh --nodes 400 --radius -0.005 --length 0.04", "radius"},
+        Misuse{"UnknownUnit", "mesh info none.msh --unit furlong",
+               "--unit: 'furlong' is no length unit (one of m, dm, cm, mm, um, in) (see `rhexis mesh info "
+               "--help`)"}),
     [](const auto& tested) { return tested.param.name; });
 
 TEST(CommandLineHelp, EveryCommandHasAnExample) {
-  for (const char* command : {"solve", "check", "compare", "mesh info", "mesh convert", "mesh make plate",
-                              "mesh make tube", "scene-reference"}) {
+  for (const char* command :
+       {"", "solve", "check", "compare", "mesh", "mesh info", "mesh convert", "mesh make", "mesh make plate",
+        "mesh make bar", "mesh make cube", "mesh make tube", "scene-reference"}) {
     const test::Ran ran = test::run_rhexis(std::string(command) + " --help");
     EXPECT_EQ(ran.code, 0) << command;
     EXPECT_THAT(ran.out, HasSubstr("Example: rhexis ")) << command;
+    for (const char* common : {"--json", "--quiet", "--verbose"}) EXPECT_THAT(ran.out, HasSubstr(common)) << command;
+  }
+}
+
+TEST(CommandLineHelp, SaysWhatCanBeWritten) {
+  EXPECT_THAT(test::run_rhexis("compare --help").out, HasSubstr("reference other..."));
+  const std::string units = test::run_rhexis("mesh info --help").out;
+  EXPECT_THAT(units, HasSubstr("m, dm, cm, mm, um, in"));
+  EXPECT_THAT(units, testing::Not(HasSubstr("->")));
+}
+
+// A value may look like an option, a command or a wrong word.
+TEST(CommandLine, ValuesAreNotTakenForOptions) {
+  const fs::path folder = test::fresh_folder("values");
+  const test::Ran ran = test::run_rhexis("mesh make tube '" + (folder / "solve.msh").string() +
+                                         "' --radius 0.005 --length 0.04 --nodes 400 --bend -90 -q");
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(test::run_rhexis("solve --out --ot scenes/none.toml").err.find("unknown"), std::string::npos);
+}
+
+TEST(CommandLine, HelpWinsOverWhatFollows) {
+  EXPECT_EQ(test::run_rhexis("--help slove").code, 0);
+  EXPECT_EQ(test::run_rhexis("--version").code, 0);
+}
+
+TEST(MeshCommand, ReadsInTheUnitGiven) {
+  const std::string cube = (test::fresh_folder("unit") / "cube.msh").string();
+  ASSERT_EQ(test::run_rhexis("mesh make cube '" + cube + "' --size 2 --nodes 100").code, 0);
+  const json info = json::parse(test::run_rhexis("mesh info --json --unit mm '" + cube + "'").out);
+  EXPECT_NEAR(info["volume"].get<double>(), 8e-9, 1e-20);
+  EXPECT_NEAR(json::parse(test::run_rhexis("mesh info --json '" + cube + "'").out)["volume"].get<double>(), 8, 1e-11);
+}
+
+TEST(MeshCommand, QuietIsSilent) {
+  const std::string cube = (test::fresh_folder("quiet") / "cube.msh").string();
+  for (const std::string& line : {"mesh make cube -q '" + cube + "' --size 1 --nodes 100",
+                                  "mesh convert -q '" + cube + "' '" + cube + ".vtu'", "mesh info -q '" + cube + "'"}) {
+    const test::Ran ran = test::run_rhexis(line);
+    EXPECT_EQ(ran.code, 0) << line;
+    EXPECT_EQ(ran.out + ran.err, "") << line;
   }
 }
 
@@ -101,6 +161,8 @@ TEST(CompareCommand, AResultEqualsItselfAndDiffersFromAnother) {
   const json same =
       json::parse(test::run_rhexis("compare --json '" + a.string() + "' '" + a.string() + "'").out)["comparisons"][0];
   for (const json& field : same["fields"]) EXPECT_EQ(field["largest"], 0.0);
+  EXPECT_EQ(test::run_rhexis("compare -q '" + a.string() + "' '" + b.string() + "'").out, "");
+  EXPECT_THAT(test::run_rhexis("compare '" + a.string() + "' '" + b.string() + "'").out, HasSubstr("displacement"));
   const json half =
       json::parse(test::run_rhexis("compare --json '" + a.string() + "' '" + b.string() + "'").out)["comparisons"][0];
   for (const json& field : half["fields"])
