@@ -13,7 +13,7 @@ namespace rhexis::linalg {
 namespace {
 
 constexpr MUMPS_INT kUseCommWorld = -987654;
-enum Job : MUMPS_INT { kStart = -1, kEnd = -2, kAnalyse = 1, kFactor = 2, kSolve = 3 };
+enum class Job : MUMPS_INT { start = -1, end = -2, analyse = 1, factor = 2, solve = 3 };
 
 /// MUMPS keeps state of the run in Fortran modules: one call at a time in a process.
 std::mutex& mumps_mutex() {
@@ -28,7 +28,7 @@ struct MumpsFactor::Instance {
     mumps.par = 1;
     mumps.sym = kind == Kind::symmetric ? 2 : 0;
     mumps.comm_fortran = kUseCommWorld;
-    call(kStart);
+    call(Job::start);
     for (const int stream : {1, 2, 3}) icntl(stream) = -1;
     icntl(4) = 0;
     icntl(6) = 0;   // no permutation to a large diagonal: the structure is symmetric and so stays
@@ -38,14 +38,14 @@ struct MumpsFactor::Instance {
     icntl(13) = 1;  // the root like any front: its inertia is counted
     icntl(24) = 1;  // carry on past null pivots, and count them
   }
-  ~Instance() { call(kEnd); }
+  ~Instance() { call(Job::end); }
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;
 
   void call(Job job) {
     const std::lock_guard lock(mumps_mutex());
     stay_on_one_thread();
-    mumps.job = job;
+    mumps.job = static_cast<MUMPS_INT>(job);
     dmumps_c(&mumps);
   }
   /// Numbered from 1 as in the manual.
@@ -82,7 +82,7 @@ MumpsOutcome MumpsFactor::analyse(std::int32_t size, std::span<const std::int32_
   mumps.irn = const_cast<MUMPS_INT*>(rows.data());  // read only
   mumps.jcn = const_cast<MUMPS_INT*>(columns.data());
   mumps.perm_in = const_cast<MUMPS_INT*>(place.data());
-  instance_->call(kAnalyse);
+  instance_->call(Job::analyse);
   return instance_->outcome();
 }
 
@@ -91,13 +91,13 @@ MumpsOutcome MumpsFactor::factor(std::span<const double> values) {
   RHEXIS_CHECK(static_cast<MUMPS_INT8>(values.size()) == mumps.nnz, "{} values for {} entries", values.size(),
                mumps.nnz);
   mumps.a = const_cast<double*>(values.data());  // read only
-  instance_->call(kFactor);
+  instance_->call(Job::factor);
   // Pivots put off to later fronts make them larger than the analysis foresaw: -8, -9 and -20 ask for more room.
   constexpr MUMPS_INT kMostPercent = 2000;
   for (MUMPS_INT code = instance_->infog(1);
        (code == -8 || code == -9 || code == -20) && instance_->icntl(14) < kMostPercent; code = instance_->infog(1)) {
     instance_->icntl(14) = 2 * instance_->icntl(14) + 20;
-    instance_->call(kFactor);
+    instance_->call(Job::factor);
   }
   return instance_->outcome();
 }
@@ -108,7 +108,7 @@ void MumpsFactor::solve(VectorX& x) {
   mumps.nrhs = 1;
   mumps.lrhs = mumps.n;
   mumps.rhs = x.data();
-  instance_->call(kSolve);
+  instance_->call(Job::solve);
   RHEXIS_CHECK(instance_->infog(1) >= 0, "MUMPS says INFOG(1) = {}, INFOG(2) = {}", instance_->infog(1),
                instance_->infog(2));
 }
