@@ -5,9 +5,9 @@
 ///   direct   m = 0: sparse Cholesky (CHOLMOD); when A is not positive definite, and for m > 0: LDL^T (MUMPS) with its
 ///            inertia; with a skew part: LU (MUMPS)
 ///   cg       m = 0: conjugate gradients on A, preconditioned by an incomplete Cholesky factor; m > 0: on the condensed
-///   A + B C^-1 B^T, C factored once per topology,
-///            preconditioned by one Cholesky of A + B diag(C)^-1 B^T and a coarse correction on patch-wise constant
-///            pressures (section 1.4 of the specification, see docs/solvers.md)
+///            A + B C^-1 B^T, C factored once per topology, preconditioned by one Cholesky of A + B D^-1 B^T, D =
+///            diag(C) weighted, and a coarse correction on patch-wise constant pressures, which is kept from matrix to
+///            matrix while it pays (condensed_preconditioner.h, docs/solvers.md)
 ///   minres   MINRES on the saddle system with the block preconditioner diag(A0, S0): A0 an SPD stand-in for A, S0 for
 ///            the Schur complement, factored once per topology; the iteration count stays flat under refinement
 ///
