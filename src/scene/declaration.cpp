@@ -8,6 +8,15 @@
 namespace rhexis::scene {
 namespace {
 
+/// 4000000, 1e15: large bounds are powers of ten, whose noughts nobody counts.
+std::string bound_text(double bound) {
+  if (std::abs(bound) < 1e7) return fmt::format("{}", bound);
+  std::string text = fmt::format("{:g}", bound);
+  std::erase(text, '+');
+  if (const std::size_t nought = text.find("e0"); nought != std::string::npos) text.erase(nought + 1, 1);
+  return text;
+}
+
 std::string name_of(const Key& key) {
   switch (key.kind) {
     case Kind::boolean: return "true or false";
@@ -41,11 +50,11 @@ bool Range::is_everything() const { return std::isinf(min) && std::isinf(max); }
 
 std::string text_of(const Range& range) {
   if (range.is_everything()) return {};
-  const std::string lower = fmt::format("{} {}", range.min_open ? "more than" : "at least", range.min);
-  const std::string upper = fmt::format("{} {}", range.max_open ? "less than" : "at most", range.max);
+  const std::string lower = fmt::format("{} {}", range.min_open ? "more than" : "at least", bound_text(range.min));
+  const std::string upper = fmt::format("{} {}", range.max_open ? "less than" : "at most", bound_text(range.max));
   if (std::isinf(range.max)) return lower;
   if (std::isinf(range.min)) return upper;
-  if (!range.min_open && !range.max_open) return fmt::format("{} to {}", range.min, range.max);
+  if (!range.min_open && !range.max_open) return fmt::format("{} to {}", bound_text(range.min), bound_text(range.max));
   return lower + " and " + upper;
 }
 

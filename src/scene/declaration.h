@@ -27,7 +27,7 @@ enum class Kind {
   box,             ///< { from = [...], to = [...] }, fractions of the bounding box
 };
 
-/// Of a number; of each entry for vectors, indices and boxes; of the bare number for lengths.
+/// Of a number; of each entry for vectors, indices and boxes; of the number or percentage for lengths.
 struct Range {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
@@ -38,7 +38,6 @@ struct Range {
   [[nodiscard]] bool is_everything() const;
 };
 [[nodiscard]] constexpr Range at_least(double min) { return {.min = min}; }
-[[nodiscard]] constexpr Range more_than(double min) { return {.min = min, .min_open = true}; }
 [[nodiscard]] constexpr Range within(double min, double max) { return {.min = min, .max = max}; }
 [[nodiscard]] constexpr Range strictly_within(double min, double max) {
   return {.min = min, .max = max, .min_open = true, .max_open = true};

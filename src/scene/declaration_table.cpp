@@ -10,6 +10,13 @@ namespace {
 
 const std::vector<std::string> kSides{"-x", "+x", "-y", "+y", "-z", "+z"};
 
+// Far beyond any body, and near enough that no product of a few of them leaves a computer's numbers.
+constexpr Range kLength = within(1e-9, 1e6);      // m
+constexpr Range kOffset = within(-1e6, 1e6);      // m; also m/s2, and a direction
+constexpr Range kModulus = within(1e-3, 1e15);    // Pa
+constexpr Range kConstant = within(-1e15, 1e15);  // Pa; c1 + c2 is a modulus
+constexpr Range kLoad = within(-1e12, 1e12);      // N, Pa
+
 template <class Names>
 std::vector<std::string> strings(const Names& names) {
   return {std::begin(names), std::end(names)};
@@ -24,6 +31,7 @@ Section root() {
               {.name = "gravity",
                .kind = Kind::vector,
                .unit = "m/s2",
+               .range = kOffset,
                .fallback = "[0.0, 0.0, 0.0]",
                .doc = "Acceleration; with `material.density` it is the body force."},
           }};
@@ -56,7 +64,7 @@ Section mesh() {
           {.name = "size",
            .kind = Kind::vector,
            .unit = "m",
-           .range = more_than(0.0),
+           .range = kLength,
            .otherwise = "needed by `plate`, `bar`, `cube`",
            .doc = "Of a generated body, which fills the box from the origin to `size`."},
           {.name = "nodes",
@@ -67,19 +75,19 @@ Section mesh() {
           {.name = "radius",
            .kind = Kind::number,
            .unit = "m",
-           .range = more_than(0.0),
+           .range = kLength,
            .otherwise = "needed by `tube` without `size`",
            .doc = "Outer radius of a tube."},
           {.name = "length",
            .kind = Kind::number,
            .unit = "m",
-           .range = more_than(0.0),
+           .range = kLength,
            .otherwise = "needed by `tube` without `size`",
            .doc = "Of a tube, along its centre line."},
           {.name = "wall",
            .kind = Kind::number,
            .unit = "m",
-           .range = at_least(0.0),
+           .range = within(0.0, kLength.max),
            .fallback = "0.0",
            .doc = "Thickness of a tube's wall; 0: a solid rod."},
           {.name = "bend",
@@ -109,7 +117,11 @@ Section sets() {
            .range = within(0.0, 1.0),
            .doc = "Nodes in a box, `{ from = [0.0, 0.0, 0.45], to = [0.5, 1.0, 0.55] }`, in fractions of the bounding "
                   "box, its borders included."},
-          {.name = "nearest", .kind = Kind::vector, .unit = "m", .doc = "The one node nearest to a point."},
+          {.name = "nearest",
+           .kind = Kind::vector,
+           .unit = "m",
+           .range = kOffset,
+           .doc = "The one node nearest to a point."},
           {.name = "nodes", .kind = Kind::indices, .range = at_least(0), .doc = "0-based, in the order of the file."},
       }};
 }
@@ -136,10 +148,10 @@ Section material() {
           {.name = "density",
            .kind = Kind::number,
            .unit = "kg/m3",
-           .range = at_least(0.0),
+           .range = within(0.0, 1e6),
            .otherwise = "0; needed with gravity",
            .doc = "Mass per volume of the undeformed body."},
-          stiffness("young", more_than(0.0), "Young's modulus E."),
+          stiffness("young", kModulus, "Young's modulus E."),
           {.name = "poisson",
            .kind = Kind::number,
            .range = strictly_within(-1.0, 0.5),
@@ -151,9 +163,9 @@ Section material() {
            .names = {"mooney-rivlin", "neo-hookean"},
            .doc = "W = c1 (I1bar - 3) + c2 (I2bar - 3); `neo-hookean` is c2 = 0. A law without constants says how "
                   "`young` and `poisson` are converted."},
-          stiffness("c1", {}, "First constant of the law; c1 + c2 is more than 0."),
-          stiffness("c2", {}, "Second constant of the law, `mooney-rivlin` only."),
-          stiffness("kappa", more_than(0.0), "Bulk modulus of the law."),
+          stiffness("c1", kConstant, "First constant of the law; c1 + c2 is at least 0.001 Pa."),
+          stiffness("c2", kConstant, "Second constant of the law, `mooney-rivlin` only."),
+          stiffness("kappa", kModulus, "Bulk modulus of the law."),
       }};
 }
 
@@ -168,13 +180,14 @@ Section model() {
                .doc = "The model, see docs/models.md."},
               {.name = "beta",
                .kind = Kind::number_or_auto,
-               .range = at_least(0.0),
+               .range = within(0.0, 1e9),
                .fallback = "\"auto\"",
                .doc = "Factor of the pressure stabilisation; 0 switches it off, `\"auto\"` chooses it from the "
                       "material. Read by `hyperelastic`."},
               {.name = "initial_lambda",
                .kind = Kind::number,
                .unit = "Pa",
+               .range = kLoad,
                .fallback = "0.0",
                .doc = "Mean stress to start from. Read by `hyperelastic` and `taylor-hood`."},
               {.name = "corotated_tangent",
@@ -190,6 +203,7 @@ Section support() {
     return Key{.name = name,
                .kind = Kind::length,
                .unit = "m",
+               .range = kOffset,
                .otherwise = "free",
                .doc = "Displacement along " + name + ": metres, or a percentage of the body's box in that direction."};
   };
@@ -214,13 +228,15 @@ const Key kFaceSide{.name = "side",
                     .doc = "The faces on that side of the bounding box, without a set."};
 
 Section traction() {
-  return {.name = "traction",
-          .form = SectionForm::list,
-          .exactly_one = {"set", "side"},
-          .doc = "A dead load on a surface, spread evenly over its undeformed area.",
-          .keys = {kFaceSet,
-                   kFaceSide,
-                   {.name = "force", .kind = Kind::vector, .unit = "N", .required = true, .doc = "In all."}}};
+  return {
+      .name = "traction",
+      .form = SectionForm::list,
+      .exactly_one = {"set", "side"},
+      .doc = "A dead load on a surface, spread evenly over its undeformed area.",
+      .keys = {
+          kFaceSet,
+          kFaceSide,
+          {.name = "force", .kind = Kind::vector, .unit = "N", .range = kLoad, .required = true, .doc = "In all."}}};
 }
 
 Section pressure() {
@@ -233,6 +249,7 @@ Section pressure() {
                    {.name = "value",
                     .kind = Kind::number,
                     .unit = "Pa",
+                    .range = kLoad,
                     .required = true,
                     .doc = "More than 0 pushes against the outward normal."}}};
 }
@@ -287,17 +304,17 @@ Section fracture() {
               {.name = "strength",
                .kind = Kind::number,
                .unit = "Pa",
-               .range = more_than(0.0),
+               .range = kModulus,
                .doc = "Stress at which the body tears. It depends on the mesh: stress at a tip grows as h^(-1/2)."},
               {.name = "toughness",
                .kind = Kind::number,
                .unit = "N/m",
-               .range = more_than(0.0),
+               .range = within(1e-9, 1e12),
                .doc = "Energy release per area at which the body tears, in place of `strength`."},
               {.name = "advance_threshold",
                .kind = Kind::number,
                .unit = "Pa",
-               .range = more_than(0.0),
+               .range = kModulus,
                .otherwise = "half of `strength`",
                .doc = "The crack runs to the farthest tet whose stress is above this; not above `strength`."},
               {.name = "ahead_only",
@@ -307,7 +324,7 @@ Section fracture() {
               {.name = "local_radius",
                .kind = Kind::number,
                .unit = "m",
-               .range = more_than(0.0),
+               .range = kLength,
                .otherwise = "four mean edge lengths",
                .doc = "Radius of the local object, the first and the least."},
               {.name = "incision",
@@ -326,11 +343,18 @@ Section crack() {
               {.name = "from",
                .kind = Kind::vector,
                .unit = "m",
+               .range = kOffset,
                .required = true,
                .doc = "Where it starts on the surface."},
-              {.name = "to", .kind = Kind::vector, .unit = "m", .required = true, .doc = "Where its front is."},
+              {.name = "to",
+               .kind = Kind::vector,
+               .unit = "m",
+               .range = kOffset,
+               .required = true,
+               .doc = "Where its front is."},
               {.name = "through",
                .kind = Kind::vector,
+               .range = kOffset,
                .fallback = "[0.0, 0.0, 1.0]",
                .doc = "Direction along the front; not along the crack."},
           }};
@@ -353,7 +377,7 @@ Section interaction() {
           {.name = "max_force",
            .kind = Kind::number,
            .unit = "N",
-           .range = more_than(0.0),
+           .range = within(1e-6, 1e6),
            .fallback = "8.9",
            .doc = "What the device can give."},
       }};
@@ -367,9 +391,15 @@ Section pull() {
               {.name = "at",
                .kind = Kind::vector,
                .unit = "m",
+               .range = kOffset,
                .required = true,
                .doc = "The nearest point of the surface is held."},
-              {.name = "by", .kind = Kind::vector, .unit = "m", .required = true, .doc = "How far it is moved."},
+              {.name = "by",
+               .kind = Kind::vector,
+               .unit = "m",
+               .range = kOffset,
+               .required = true,
+               .doc = "How far it is moved."},
               {.name = "seconds",
                .kind = Kind::number,
                .unit = "s",

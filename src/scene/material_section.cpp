@@ -7,28 +7,26 @@ bool reads_law(model::ModelKind kind) {
   return kind == model::ModelKind::hyperelastic || kind == model::ModelKind::taylor_hood;
 }
 
-tl::unexpected<Error> missing(const SectionValues& values, std::string_view key, const std::string& beside) {
-  return values.place.fail(fmt::format("{} is missing beside {}", in_quotes(values.path_of(key)), in_quotes(beside)),
-                           "give " + wanted(*values.section->find(key)));
-}
+/// Below this the law counts as one without stiffness, Pa; the least of `young` and `kappa` too.
+constexpr double kLeastStiffness = 1e-3;
 
 /// The constants of the law; all of them must be there.
 Expected<material::MooneyRivlin> read_law(const SectionValues& values, bool neo_hookean) {
-  const std::string beside = values.given_key("c1") ? "c1" : values.given_key("c2") ? "c2" : "kappa";
+  const std::string beside = values.given_key("c1") ? "'c1'" : values.given_key("c2") ? "'c2'" : "'kappa'";
   for (const std::string_view key : {"c1", "c2", "kappa"}) {
     if (neo_hookean && key == "c2") {
       if (values.given_key(key))
         return values.place_of(key).fail("'material.c2' is no constant of 'neo-hookean'",
                                          "leave it out, or law = \"mooney-rivlin\"");
     } else if (!values.given_key(key)) {
-      return missing(values, key, beside);
+      return missing(values, key, " beside " + beside);
     }
   }
   const material::MooneyRivlin law{values.get<double>("c1"), neo_hookean ? 0.0 : values.get<double>("c2"),
                                    values.get<double>("kappa")};
-  if (!(law.c1 + law.c2 > 0.0))
+  if (!(law.c1 + law.c2 >= kLeastStiffness))
     return values.place_of("c1").fail(fmt::format("the law has no stiffness: c1 + c2 is {}", law.c1 + law.c2),
-                                      "c1 + c2 more than 0");
+                                      fmt::format("c1 + c2 at least {} Pa", kLeastStiffness));
   return law;
 }
 
@@ -37,7 +35,8 @@ Expected<material::MooneyRivlin> read_law(const SectionValues& values, bool neo_
 Expected<MaterialSettings> read_material_section(const SectionValues& values, Scene& scene) {
   MaterialSettings settings;
   if (values.given_key("density")) settings.density = values.get<double>("density");
-  if (!values.given_key("density") && !scene.gravity.isZero(0.0)) return missing(values, "density", "gravity");
+  if (!values.given_key("density") && !scene.gravity.isZero(0.0))
+    return missing(values, "density", " beside 'gravity'");
 
   const bool has_elastic = values.given_key("young") || values.given_key("poisson");
   const bool has_law = values.given_key("c1") || values.given_key("c2") || values.given_key("kappa");
@@ -45,8 +44,8 @@ Expected<MaterialSettings> read_material_section(const SectionValues& values, Sc
   if (!has_elastic && !has_law)
     return values.place.fail("the material has no stiffness", "give young and poisson, or law with its constants");
   if (has_elastic) {
-    if (!values.given_key("young")) return missing(values, "young", "poisson");
-    if (!values.given_key("poisson")) return missing(values, "poisson", "young");
+    if (!values.given_key("young")) return missing(values, "young", " beside 'poisson'");
+    if (!values.given_key("poisson")) return missing(values, "poisson", " beside 'young'");
     settings.elastic = {values.get<double>("young"), values.get<double>("poisson")};
   }
   if (has_law) {

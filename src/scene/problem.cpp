@@ -29,8 +29,9 @@ model::ModelSettings choose_settings(const Scene& scene, const mesh::TetMesh& me
     if (reach > kMostSmoothing * thickness)
       problem.warnings.push_back(fmt::format(
           "{}: beta = {:.4g} smooths lambda over {:.3g} m, more than a quarter of the body's thickness of {:.3g} m "
-          "(a smaller beta or a finer mesh would resolve more)",
-          scene.file, settings.beta, reach, thickness));
+          "({} would resolve more)",
+          scene.file, settings.beta, reach, thickness,
+          scene.model.beta ? "a smaller beta or a finer mesh" : "a finer mesh"));  // below auto the body locks
   }
   return settings;
 }
@@ -57,8 +58,26 @@ Expected<model::Loading> make_loading(const Scene& scene, const Body& body, cons
     if (!faces) return fail(faces.error());
     loading.pressures.push_back(
         model::make_follower_pressure(body.mesh, space, *faces, pressure.value, loading.supports));
+    if (!loading.pressures.back().closed_or_held_rim && scene.solver.options.linear != "direct")
+      return pressure.faces.place.fail(
+          fmt::format("a follower pressure on a surface with a free rim makes the tangent non-symmetric, which {} "
+                      "cannot solve",
+                      in_quotes(scene.solver.options.linear)),
+          "linear = \"direct\", or hold the rim");
   }
   return loading;
+}
+
+/// What the scene says to `rhexis tear` and `rhexis play` only.
+void warn_of_tearing(const Scene& scene, std::vector<std::string>& warnings) {
+  const auto warn = [&](const Place& place, std::string_view section) {
+    const auto unread = place.fail(in_quotes(section) + " is not read by `rhexis solve`, which has no tearing yet");
+    warnings.push_back(unread.value().message());
+  };
+  if (scene.fracture) warn(scene.fracture->place, "fracture");
+  if (!scene.cracks.empty()) warn(scene.cracks.front().place, "crack");
+  if (scene.interaction.place) warn(*scene.interaction.place, "interaction");
+  if (!scene.pulls.empty()) warn(scene.pulls.front().place, "pull");
 }
 
 bool acts(const model::Loading& loading) {
@@ -76,6 +95,7 @@ Expected<Problem> build_problem(const Scene& scene) {
   problem.options = scene.solver.options;
   problem.warnings = scene.warnings;
   problem.notes = scene.notes;
+  warn_of_tearing(scene, problem.warnings);
 
   Expected<Body> body = make_body(scene, problem.notes);
   if (!body) return fail(std::move(body.error()));

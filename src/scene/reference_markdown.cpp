@@ -41,7 +41,8 @@ constexpr std::string_view kCornerCases = R"(## Corner cases
   `scenes/vessel.toml` gives the published constants explicitly.
 * **`mass-spring`** has a Poisson's ratio of 1/4 whatever is asked; a warning says so.
 * **What is not read.** A key that is right in itself but has no effect on what was chosen, such as `beta` with `linear`,
-  is a warning, not an error: one scene may be run with several models by `--set model.kind=...`.
+  is a warning, not an error: one scene may be run with several models by `--set model.kind=...`. So are `[fracture]`,
+  `[[crack]]`, `[interaction]` and `[[pull]]` before `rhexis solve`, which has no tearing yet.
 * **`beta`.** The stabilisation smooths lambda over a length that grows with beta and the tets; when that is more than a
   quarter of the body's thickness, a warning says so (docs/stabilisation.md).
 * **Bounding box.** The box of sides, fractions and percentages is that of the nodes that belong to a tet. Nodes that belong
@@ -55,8 +56,8 @@ constexpr std::string_view kCornerCases = R"(## Corner cases
 * **Rigid motions.** The supports must stop all six. What is left is named: "translation along y", "rotation about an axis along z
   through (0.02, 0, 0) m". A motion counts as stopped when some held component resists it by more than a millionth of what
   it moves the body.
-* **Pressure** on a surface with a rim that is not held makes the system unsymmetric: `linear = "direct"` solves it, `cg` and
-  `minres` refuse.
+* **Pressure** on a surface with a rim that is not held makes the system unsymmetric: `linear = "direct"` solves it, with `cg`
+  and `minres` it is an error.
 * **A mesh** with an inverted, flat, doubled or unconnected tet is refused; the error names the first, `rhexis mesh info` lists all.
 * **Limits.** A scene has at most 4 MiB, a generated mesh at most 4,000,000 nodes.
 )";

@@ -115,6 +115,7 @@ struct InteractionSettings {
   std::string response;                         ///< "exact", "recorded"
   std::optional<std::filesystem::path> record;  ///< found from here; given with "recorded"
   double max_force = 0.0;                       ///< N
+  std::optional<Place> place;                   ///< empty: the section is left out
 };
 struct PullSettings {
   Vec3 at = Vec3::Zero();  ///< m

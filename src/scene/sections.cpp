@@ -16,11 +16,6 @@ std::optional<double> optional_number(const SectionValues& values, std::string_v
   return setting == nullptr ? std::nullopt : std::optional<double>(std::get<double>(setting->value));
 }
 
-tl::unexpected<Error> missing(const SectionValues& values, std::string_view key, const std::string& why) {
-  return values.place.fail(in_quotes(values.path_of(key)) + " is missing" + why,
-                           "give " + wanted(*values.section->find(key)));
-}
-
 Expected<GeneratedBox> read_box_shape(const SectionValues& values, const std::string& kind, Scene& scene) {
   const std::string by = "generate = \"" + kind + '"';
   for (const std::string_view key : {"radius", "length", "wall", "bend"}) warn_unread(values, key, by, scene);
@@ -64,6 +59,11 @@ Expected<GeneratedTube> read_tube_shape(const SectionValues& values) {
 }
 
 }  // namespace
+
+tl::unexpected<Error> missing(const SectionValues& values, std::string_view key, const std::string& why) {
+  return values.place.fail(in_quotes(values.path_of(key)) + " is missing" + why,
+                           "give " + wanted(*values.section->find(key)));
+}
 
 void warn_unread(const SectionValues& values, std::string_view key, const std::string& by, Scene& scene) {
   if (!values.given_key(key)) return;
@@ -174,6 +174,7 @@ Expected<InteractionSettings> read_interaction_section(const SectionValues& valu
   InteractionSettings interaction;
   interaction.response = values.get<std::string>("response");
   interaction.max_force = values.get<double>("max_force");
+  if (values.given) interaction.place = values.place;
   if (const Setting* record = values.find("record")) interaction.record = folder / std::get<std::string>(record->value);
   if (interaction.response == "recorded" && !interaction.record)
     return missing(values, "record", ", which response = \"recorded\" needs");

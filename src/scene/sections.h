@@ -19,6 +19,8 @@ Expected<CrackSettings> read_crack(const SectionValues& values);
 Expected<InteractionSettings> read_interaction_section(const SectionValues& values, const std::filesystem::path& folder,
                                                        Scene& scene);
 
+/// 'mesh.size' is missing<why> (give ...).
+[[nodiscard]] tl::unexpected<Error> missing(const SectionValues& values, std::string_view key, const std::string& why);
 /// Warns that a key is given and has no effect: `FILE:LINE: 'model.beta' is not read by 'linear'`.
 void warn_unread(const SectionValues& values, std::string_view key, const std::string& by, Scene& scene);
 

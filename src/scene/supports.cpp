@@ -36,7 +36,7 @@ Expected<void> prescribe(const SupportSettings& support, const Body& body, const
       Prescription& dof = dofs[3 * static_cast<std::size_t>(node) + axis];
       if (dof.support != nullptr && std::abs(dof.value - value) > kSameValue * body.box.size().maxCoeff())
         return support.displacement_place[axis].fail(
-            fmt::format("{} of {} (set {}) is fixed at {:.6g} m, but at {:.6g} m by {} (set {})", "xyz"[axis],
+            fmt::format("{} of {} (set {}) is fixed at {} m, but at {} m by {} (set {})", "xyz"[axis],
                         name_of_node(body, space, node), in_quotes(support.set), value, dof.value,
                         dof.support->displacement_place[axis].describe(), in_quotes(dof.support->set)),
             "one value for each component of a node");

@@ -1,6 +1,7 @@
 #include "scene/value_of.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -30,7 +31,21 @@ std::optional<double> percentage_in(std::string_view text) {
   double value = 0.0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (code != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value / 100.0;
+  return value;
+}
+
+/// What stands where something else is wanted. The value of an override that is no TOML counts as text, and a number
+/// beyond 64 bits is none.
+std::string what_is(const Node& node) {
+  if (node.as<std::string>() != nullptr && !node.raw.empty()) {
+    const Expected<Node> parsed = parse_document("value = " + node.raw, {});
+    // What the parser says of integers, and of numbers with a point or an exponent.
+    constexpr std::array kTooLarge{"not representable in 64 bits", "could not be interpreted as a value"};
+    const auto says = [&](const char* text) { return parsed.error().what.find(text) != std::string::npos; };
+    if (!parsed && std::any_of(kTooLarge.begin(), kTooLarge.end(), says))
+      return one_line(node.raw, 60) + ", a number too large";
+  }
+  return std::string(node.type_name());
 }
 
 /// One key, its node and its path: the checks of each form.
@@ -60,18 +75,23 @@ class Reader {
   tl::unexpected<Error> wrong(const Node& node, const std::string& path, const std::string& is) const {
     return node.place.fail(fmt::format("{} is {}", in_quotes(path), is), "give " + wanted(key_));
   }
-  tl::unexpected<Error> wrong_type() const { return wrong(node_, path_, std::string(node_.type_name())); }
+  /// Text beside which a number may stand: the text itself says more than that it is some.
+  std::string text_is(const std::string& text) const {
+    const std::string is = what_is(node_);
+    return is == node_.type_name() ? in_quotes(text) : is;
+  }
+  tl::unexpected<Error> wrong_type() const { return wrong(node_, path_, what_is(node_)); }
 
   Expected<double> number(const Node& node, const std::string& path) const {
     const std::optional<double> value = number_in(node);
-    if (!value) return wrong(node, path, std::string(node.type_name()));
+    if (!value) return wrong(node, path, what_is(node));
     if (!key_.range.holds(*value)) return wrong(node, path, fmt::format("{}", *value));
     return *value;
   }
 
   Expected<std::int64_t> integer(const Node& node, const std::string& path) const {
     const auto* value = node.as<std::int64_t>();
-    if (value == nullptr) return wrong(node, path, std::string(node.type_name()));
+    if (value == nullptr) return wrong(node, path, what_is(node));
     if (!key_.range.holds(static_cast<double>(*value))) return wrong(node, path, fmt::format("{}", *value));
     return *value;
   }
@@ -105,7 +125,7 @@ class Reader {
 
   Expected<Vec3> vector(const Node& node, const std::string& path) const {
     const Array* items = node.as<Array>();
-    if (items == nullptr) return wrong(node, path, std::string(node.type_name()));
+    if (items == nullptr) return wrong(node, path, what_is(node));
     if (items->size() != 3) return wrong(node, path, fmt::format("a list of {}", items->size()));
     Vec3 value;
     for (int i = 0; i < 3; ++i) {
@@ -130,15 +150,15 @@ class Reader {
 
   Expected<Value> number_or_auto() const {
     if (const auto* text = node_.as<std::string>())
-      return *text == "auto" ? Expected<Value>(Value(*text)) : wrong(node_, path_, in_quotes(*text));
+      return *text == "auto" ? Expected<Value>(Value(*text)) : wrong(node_, path_, text_is(*text));
     return number(node_, path_).map([](double value) { return Value(value); });
   }
 
   Expected<Value> length() const {
     if (const auto* text = node_.as<std::string>()) {
-      const std::optional<double> fraction = percentage_in(*text);
-      if (!fraction) return wrong(node_, path_, in_quotes(*text));
-      return Value(Length{*fraction, true});
+      const std::optional<double> percentage = percentage_in(*text);
+      if (!percentage || !key_.range.holds(*percentage)) return wrong(node_, path_, text_is(*text));
+      return Value(Length{*percentage / 100.0, true});
     }
     return number(node_, path_).map([](double value) { return Value(Length{value, false}); });
   }

@@ -65,7 +65,7 @@ TEST(Override, ErrorsNameIt) {
   EXPECT_EQ(line("model.beta"), "--set model.beta: no '=' in it (--set key=value, as in --set model.beta=0)");
   EXPECT_EQ(line("=3"), "--set =3: not a key before the '=' (a dotted name, as in --set model.beta=0)");
   EXPECT_EQ(line("a b=3"), "--set a b=3: not a key before the '=' (a dotted name, as in --set model.beta=0)");
-  EXPECT_EQ(line("model.beta=1e"), "--set model.beta=1e: 'model.beta' is '1e' (give \"auto\" or a number, at least 0)");
+  EXPECT_EQ(line("model.beta=1e"), "--set model.beta=1e: 'model.beta' is '1e' (give \"auto\" or a number, 0 to 1e9)");
   EXPECT_EQ(line("mesh.file=a.msh"),
             "--set mesh.file=a.msh: 'mesh.file' and 'mesh.generate' are both given (give one of them)");
   EXPECT_EQ(line("model.beta=1\ntitle=2"),
@@ -76,6 +76,26 @@ TEST(Override, ErrorsNameIt) {
             "--set title=?: not a line of text in UTF-8 (--set key=value, as in --set model.beta=0)");
   EXPECT_EQ(line("material="),
             "s.toml: [material] is missing (a section with density, young, poisson, law, c1, c2, kappa)");
+}
+
+// No TOML, and yet no text.
+TEST(Override, NumbersBeyond64BitsAreTooLarge) {
+  const auto line = [](const std::string& override) { return message_of(kGood, {override}); };
+  EXPECT_EQ(line("material.young=1e400"),
+            "--set material.young=1e400: 'material.young' is 1e400, a number too large (give a number in Pa, 0.001 to "
+            "1e15)");
+  EXPECT_EQ(line("mesh.nodes=99999999999999999999"),
+            "--set mesh.nodes=99999999999999999999: 'mesh.nodes' is 99999999999999999999, a number too large (give an "
+            "integer, 4 to 4000000)");
+  EXPECT_EQ(line("model.beta=1e400"),
+            "--set model.beta=1e400: 'model.beta' is 1e400, a number too large (give \"auto\" or a number, 0 to 1e9)");
+  EXPECT_EQ(
+      line("support.1.z=-1e400"),
+      "--set support.1.z=-1e400: 'support.1.z' is -1e400, a number too large (give a number in m, or a percentage "
+      "of the body's box as \"50%\", -1000000 to 1000000)");
+  EXPECT_EQ(line("material.young=soft"),
+            "--set material.young=soft: 'material.young' is text (give a number in Pa, 0.001 to 1e15)");
+  EXPECT_EQ(scene_with({"title=1e400"}).title, "1e400");
 }
 
 }  // namespace

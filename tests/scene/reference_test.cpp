@@ -90,8 +90,9 @@ TEST(Declaration, IsConsistent) {
 
 TEST(Declaration, RangesInWords) {
   EXPECT_EQ(text_of(at_least(0.0)), "at least 0");
-  EXPECT_EQ(text_of(more_than(0.0)), "more than 0");
+  EXPECT_EQ(text_of(Range{.min = 0.0, .min_open = true}), "more than 0");
   EXPECT_EQ(text_of(within(1, 100)), "1 to 100");
+  EXPECT_EQ(text_of(within(-4000000, 1e15)), "-4000000 to 1e15");
   EXPECT_EQ(text_of(strictly_within(-1.0, 0.5)), "more than -1 and less than 0.5");
   EXPECT_EQ(text_of(Range{.max = 3.0}), "at most 3");
   EXPECT_EQ(text_of(Range{}), "");
