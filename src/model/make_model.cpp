@@ -1,5 +1,7 @@
 #include "model/make_model.h"
 
+#include <algorithm>
+
 #include "base/check.h"
 #include "element/tet_kernels.h"
 #include "model/mass_spring.h"
@@ -9,7 +11,11 @@
 
 namespace rhexis::model {
 
-std::string_view name_of(ModelKind kind) { return kModelNames[static_cast<std::size_t>(kind)]; }
+ModelKind kind_named(std::string_view name) {
+  const auto* const found = std::find(kModelNames.begin(), kModelNames.end(), name);
+  RHEXIS_CHECK(found != kModelNames.end(), "model '{}'", name);
+  return static_cast<ModelKind>(found - kModelNames.begin());
+}
 
 std::unique_ptr<Model> make_model(const mesh::TetMesh& mesh, const ModelSettings& settings) {
   const element::TetKernels& kernels = element::tet_kernels();

@@ -17,7 +17,12 @@ enum class ModelKind { mass_spring, linear, corotated, geometrically_nonlinear, 
 
 inline constexpr std::array<std::string_view, 6> kModelNames{
     "mass-spring", "linear", "corotated", "geometrically-nonlinear", "hyperelastic", "taylor-hood"};
-[[nodiscard]] std::string_view name_of(ModelKind kind);
+/// `name` must be one of kModelNames.
+[[nodiscard]] ModelKind kind_named(std::string_view name);
+/// Has lambda beside the displacement, and reads `law`; the others read `elastic`.
+[[nodiscard]] constexpr bool is_mixed(ModelKind kind) {
+  return kind == ModelKind::hyperelastic || kind == ModelKind::taylor_hood;
+}
 
 enum class CorotatedTangent { exact, warped };  ///< warped: the paper's R K_e R^T
 

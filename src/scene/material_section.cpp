@@ -3,10 +3,6 @@
 namespace rhexis::scene {
 namespace {
 
-bool reads_law(model::ModelKind kind) {
-  return kind == model::ModelKind::hyperelastic || kind == model::ModelKind::taylor_hood;
-}
-
 /// Below this the law counts as one without stiffness, Pa; the least of `young` and `kappa` too.
 constexpr double kLeastStiffness = 1e-3;
 
@@ -56,14 +52,14 @@ Expected<MaterialSettings> read_material_section(const SectionValues& values, Sc
 
   if (!has_law) {
     settings.law = material::to_mooney_rivlin(settings.elastic, neo_hookean);
-    if (reads_law(scene.model.kind))
+    if (model::is_mixed(scene.model.kind))
       scene.notes.push_back(
           fmt::format("c1 = {:.6g} Pa, c2 = {:.6g} Pa, kappa = {:.6g} Pa converted from young and poisson",
                       settings.law.c1, settings.law.c2, settings.law.kappa));
   }
   if (!has_elastic) {
     settings.elastic = material::to_elastic(settings.law);
-    if (!reads_law(scene.model.kind))
+    if (!model::is_mixed(scene.model.kind))
       scene.notes.push_back(fmt::format("young = {:.6g} Pa, poisson = {:.6g} converted from c1, c2 and kappa",
                                         settings.elastic.young, settings.elastic.poisson));
   }

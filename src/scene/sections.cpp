@@ -106,17 +106,15 @@ Expected<MeshSettings> read_mesh_section(const SectionValues& values, const fs::
 ModelChoice read_model_section(const SectionValues& values, Scene& scene) {
   ModelChoice choice;
   const std::string& kind = values.get<std::string>("kind");
-  for (std::size_t i = 0; i < model::kModelNames.size(); ++i)
-    if (model::kModelNames[i] == kind) choice.kind = static_cast<model::ModelKind>(i);
+  choice.kind = model::kind_named(kind);
   if (const auto* beta = std::get_if<double>(&values.find("beta")->value)) choice.beta = *beta;
   choice.initial_lambda = values.get<double>("initial_lambda");
   if (values.get<std::string>("corotated_tangent") == "warped")
     choice.corotated_tangent = model::CorotatedTangent::warped;
 
   const bool stabilised = choice.kind == model::ModelKind::hyperelastic;
-  const bool mixed = stabilised || choice.kind == model::ModelKind::taylor_hood;
   if (!stabilised) warn_unread(values, "beta", in_quotes(kind), scene);
-  if (!mixed) warn_unread(values, "initial_lambda", in_quotes(kind), scene);
+  if (!model::is_mixed(choice.kind)) warn_unread(values, "initial_lambda", in_quotes(kind), scene);
   if (choice.kind != model::ModelKind::corotated) warn_unread(values, "corotated_tangent", in_quotes(kind), scene);
   return choice;
 }
