@@ -207,8 +207,7 @@ TEST(Equilibrium, TheObserverCanStopTheRun) {
 }
 
 TEST(Equilibrium, CreepingUpToALimitPointEnds) {
-  // A cube of St. Venant-Kirchhoff pressed together past what the law bears: steps fail, halve, succeed, double and
-  // fail.
+  // A cube of springs pressed together past what they bear: steps fail, halve, succeed, double and fail.
   const mesh::TetMesh mesh = mesh::make_bar({Vec3::Constant(0.01)}, 200).value();
   model::ModelSettings settings = psh(0);
   settings.kind = model::ModelKind::mass_spring;
