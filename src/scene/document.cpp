@@ -107,6 +107,22 @@ Node convert(const toml::node& from, const std::shared_ptr<const std::string>& f
   return node;
 }
 
+/// The complaint of toml++ without the words it begins with, in the words of a scene where it has its own.
+Error in_our_words(std::string_view complaint) {
+  for (const std::string_view prefix : {"Error while parsing ", "Error: "})
+    if (complaint.starts_with(prefix)) complaint.remove_prefix(prefix.size());
+  // Of integers, and of numbers with a point or an exponent; the number stands before it in quotes.
+  for (const std::string_view beyond : {"' is not representable in 64 bits", "' could not be interpreted as a value"}) {
+    if (!complaint.ends_with(beyond)) continue;
+    complaint.remove_suffix(beyond.size());
+    const std::string_view number = complaint.substr(complaint.find('\'') + 1);
+    return {.what = fmt::format("{} is {}", in_quotes(number), kNumberTooLarge),
+            .remedy = "integers go up to 9223372036854775807, numbers with a point or an exponent to 1.7e308",
+            .file = {}};
+  }
+  return {.what = "not valid TOML: " + one_line(complaint, 300), .remedy = {}, .file = {}};
+}
+
 bool gives_up(std::string_view text) {
   try {
     static_cast<void>(toml::parse(text));
@@ -165,10 +181,7 @@ Expected<Node> parse_document(std::string_view text, const std::string& name) {
     const auto file = std::make_shared<const std::string>(name);
     return Node{.value = convert_table(toml::parse(text), file), .place = {file, 0}, .raw = {}};
   } catch (const toml::parse_error& error) {
-    std::string_view what = error.description();
-    for (const std::string_view prefix : {"Error while parsing ", "Error: "})
-      if (what.substr(0, prefix.size()) == prefix) what.remove_prefix(prefix.size());
-    return fail("not valid TOML: " + one_line(what, 300), {}, name, static_cast<int>(error.source().begin.line));
+    return fail(in_our_words(error.description()).at(name, static_cast<int>(error.source().begin.line)));
   } catch (const ParserGaveUp&) {
     return fail("not valid TOML", {}, name, line_of_giving_up(text));
   }

@@ -57,6 +57,9 @@ struct Entry {
 /// The largest scene that is read, bytes; room for a list of some hundred thousand nodes.
 inline constexpr std::size_t kMaxSceneBytes = 4U << 20U;
 
+/// How `what` ends in the error of parse_document about a number that 64 bits do not hold.
+inline constexpr std::string_view kNumberTooLarge = "a number too large";
+
 /// The root is a Table. Errors carry `name` and the line.
 [[nodiscard]] Expected<Node> parse_document(std::string_view text, const std::string& name);
 

@@ -39,11 +39,8 @@ std::optional<double> percentage_in(std::string_view text) {
 std::string what_is(const Node& node) {
   if (node.as<std::string>() != nullptr && !node.raw.empty()) {
     const Expected<Node> parsed = parse_document("value = " + node.raw, {});
-    // What the parser says of integers, and of numbers with a point or an exponent.
-    constexpr std::array kTooLarge{"not representable in 64 bits", "could not be interpreted as a value"};
-    const auto says = [&](const char* text) { return parsed.error().what.find(text) != std::string::npos; };
-    if (!parsed && std::any_of(kTooLarge.begin(), kTooLarge.end(), says))
-      return one_line(node.raw, 60) + ", a number too large";
+    if (!parsed && parsed.error().what.ends_with(kNumberTooLarge))
+      return fmt::format("{}, {}", one_line(node.raw, 60), kNumberTooLarge);
   }
   return std::string(node.type_name());
 }

@@ -110,7 +110,14 @@ const std::vector<Broken> kRanges{
     {"too_many_nodes", "nodes = 200", "nodes = 9223372036854775807",
      "s.toml:7: 'mesh.nodes' is 9223372036854775807 (give an integer, 4 to 4000000)"},
     {"integer_overflow", "nodes = 200", "nodes = 9223372036854775808",
-     "s.toml:7: not valid TOML: decimal integer: '9223372036854775808' is not representable in 64 bits"},
+     "s.toml:7: '9223372036854775808' is a number too large (integers go up to 9223372036854775807, numbers with a "
+     "point or an exponent to 1.7e308)"},
+    {"number_overflow", "young = 1.0e6", "young = 1e400",
+     "s.toml:16: '1e400' is a number too large (integers go up to 9223372036854775807, numbers with a point or an "
+     "exponent to 1.7e308)"},
+    {"number_overflow_in_list", "-9.81]", "-1.5e999]",
+     "s.toml:2: '1.5e999' is a number too large (integers go up to 9223372036854775807, numbers with a point or an "
+     "exponent to 1.7e308)"},
     {"size_negative", "[0.04, 0.01, 0.01]", "[0.04, -0.01, 0.01]",
      "s.toml:6: 'mesh.size.1' is -0.01 (give three numbers in m, each 1e-09 to 1000000)"},
     {"box_in_percent", "side = \"-x\"", "box = { from = [0, 0, 45], to = [1, 1, 55] }",
