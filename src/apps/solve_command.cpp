@@ -113,15 +113,17 @@ int solve(const SceneOptions& options, const Common& common) {
     Progress progress(!common.quiet);
     const auto observe = [&](const solver::StepReport& step, const model::State& at, const VectorX& reaction) {
       progress.update(step.load, progress_text(step));
-      written =
-          folder->write_step(step.load, problem.mesh, result::make_fields(problem.mesh, *problem.model, at, reaction));
+      written = folder->write_step(
+          step.load, problem.mesh,
+          result::make_fields(problem.mesh, *problem.model, at, problem.model->fields(at), reaction));
       return written.has_value() && !interrupt.asked();
     };
     outcome = solver::solve_equilibrium(*problem.model, problem.loading, problem.options, state, observe);
   }
+  const model::TetFields tets = problem.model->fields(state);
   if (written)
-    written =
-        folder->write_result(problem.mesh, result::make_fields(problem.mesh, *problem.model, state, outcome.reaction));
+    written = folder->write_result(problem.mesh,
+                                   result::make_fields(problem.mesh, *problem.model, state, tets, outcome.reaction));
 
   const result::RunDescription run{.title = problem.title,
                                    .scene = options.scene,
@@ -130,7 +132,8 @@ int solve(const SceneOptions& options, const Common& common) {
                                    .beta = problem.settings.beta,
                                    .notes = problem.notes,
                                    .warnings = problem.warnings};
-  const ordered_json summary = result::make_summary(run, problem.mesh, *problem.model, problem.loading, state, outcome,
+  const ordered_json summary = result::make_summary(run, problem.mesh, *problem.model, problem.loading,
+                                                    result::measure(problem.mesh, state, tets), outcome,
                                                     {.read = read_seconds, .total = watch.seconds()});
   if (written) written = folder->write_summary(summary);
   if (!written) {

@@ -38,8 +38,7 @@ VectorX on_vertices(const model::DisplacementSpace& space, VectorX force) {
 }  // namespace
 
 std::vector<Field> make_fields(const mesh::TetMesh& mesh, const model::Model& model, const model::State& state,
-                               const VectorX& reaction) {
-  const model::TetFields tets = model.fields(state);
+                               const model::TetFields& tets, const VectorX& reaction) {
   const std::size_t count = mesh.tet_count();
   Field pressure{"pressure", Centering::cell, 1, std::vector<double>(count)};
   Field principal{"principal_max", Centering::cell, 1, std::vector<double>(count)};
@@ -68,8 +67,7 @@ std::vector<Field> make_fields(const mesh::TetMesh& mesh, const model::Model& mo
   return fields;
 }
 
-Measures measure(const mesh::TetMesh& mesh, const model::Model& model, const model::State& state) {
-  const model::TetFields tets = model.fields(state);
+Measures measure(const mesh::TetMesh& mesh, const model::State& state, const model::TetFields& tets) {
   Measures measures;
   double reference = 0.0;
   double deformed = 0.0;

@@ -13,10 +13,11 @@ namespace rhexis::result {
 
 /// PointData `displacement` (m) and `reaction` (N), CellData `lambda`, `pressure` (= -lambda), `stress` (Cauchy),
 /// `principal_max`, `von_mises` (all Pa) and `J`; Taylor-Hood adds `lambda` on the points. Only the nodes of the mesh,
-/// in its order. `reaction` has 3 values per node of the model's displacement space, or is empty: the field is left out
-/// then.
+/// in its order. `tets` is model.fields(state). `reaction` has 3 values per node of the model's displacement space, or
+/// is empty: the field is left out then.
 [[nodiscard]] std::vector<mesh::Field> make_fields(const mesh::TetMesh& mesh, const model::Model& model,
-                                                   const model::State& state, const VectorX& reaction);
+                                                   const model::State& state, const model::TetFields& tets,
+                                                   const VectorX& reaction);
 
 /// Numbers of a state that the summary reports.
 struct Measures {
@@ -26,6 +27,6 @@ struct Measures {
       0.0;  ///< area-weighted RMS of the jumps of lambda over interior faces / volume-weighted mean |lambda|
   double max_displacement = 0.0;  ///< m
 };
-[[nodiscard]] Measures measure(const mesh::TetMesh& mesh, const model::Model& model, const model::State& state);
+[[nodiscard]] Measures measure(const mesh::TetMesh& mesh, const model::State& state, const model::TetFields& tets);
 
 }  // namespace rhexis::result

@@ -10,8 +10,6 @@
 #include <tbb/version.h>
 #include <Eigen/Core>
 
-#include "result/fields.h"
-
 namespace rhexis::result {
 namespace {
 
@@ -36,9 +34,8 @@ ordered_json steps_json(const std::vector<solver::StepReport>& steps) {
 }  // namespace
 
 ordered_json make_summary(const RunDescription& run, const mesh::TetMesh& mesh, const model::Model& model,
-                          const model::Loading& loading, const model::State& state, const solver::Report& report,
+                          const model::Loading& loading, const Measures& measures, const solver::Report& report,
                           const RunTimes& times) {
-  const Measures measures = measure(mesh, model, state);
   ordered_json iterations = ordered_json::array();
   for (const solver::StepReport& step : report.steps) iterations.push_back(step.iterations);
 

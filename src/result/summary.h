@@ -10,6 +10,7 @@
 #include "mesh/tet_mesh.h"
 #include "model/loading.h"
 #include "model/model.h"
+#include "result/fields.h"
 #include "solver/equilibrium.h"
 
 namespace rhexis::result {
@@ -36,7 +37,7 @@ struct RunDescription {
 /// A number that is not finite becomes null: JSON has no NaN.
 [[nodiscard]] nlohmann::ordered_json make_summary(const RunDescription& run, const mesh::TetMesh& mesh,
                                                   const model::Model& model, const model::Loading& loading,
-                                                  const model::State& state, const solver::Report& report,
+                                                  const Measures& measures, const solver::Report& report,
                                                   const RunTimes& times);
 
 /// Rhexis and the libraries it runs with.

@@ -1,7 +1,6 @@
 #include "scene/value_of.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>

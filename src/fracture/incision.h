@@ -1,0 +1,45 @@
+#pragma once
+
+/// From the surface that a crack sweeps to a MeshEdit. Both methods leave the mesh as it is: the caller applies the
+/// edit.
+
+#include <cstdint>
+#include <vector>
+
+#include "fracture/crack.h"
+#include "mesh/mesh_edit.h"
+#include "mesh/torn_mesh.h"
+
+namespace rhexis::fracture {
+
+enum class IncisionMethod { keep_nodes, split };
+
+/// A remaining tet may become flatter than the worst of the intact mesh by this factor, no more: its radius ratio stays
+/// >= (smallest radius ratio of the intact mesh) * kFlattestTet. No unit.
+inline constexpr double kFlattestTet = 0.2;
+
+/// A node closer to the plane than this times the mean edge length counts as above it (section 2.4).
+inline constexpr double kOnPlane = 1e-9;
+
+struct IncisionSettings {
+  IncisionMethod method = IncisionMethod::keep_nodes;
+  double mean_edge = 0.0;               ///< m, of the intact mesh
+  double smallest_radius_ratio = 0.0;   ///< of the intact mesh
+  std::vector<std::uint8_t> immovable;  ///< per node of the mesh: supported or held by the hand; those stay where they
+                                        ///< are. Copies inherit by original().
+};
+
+struct Incision {
+  mesh::MeshEdit edit;       ///< without `frozen`: see pieces.h. Empty when the surface meets no edge
+  int edges_cut = 0;         ///< edges that the surface crosses
+  int nodes_off_plane = 0;   ///< ends of those edges that could not be brought to the plane
+  double volume_lost = 0.0;  ///< m^3, before minus after
+};
+
+/// keep_nodes (Nakao et al. 2007; (4.10)-(4.13) of the thesis): both ends of every crossed edge are projected onto the
+/// surface, tets with a crossed edge are removed; no node is added. split: nodes near the surface are snapped to it,
+/// tets are sorted by side, and the nodes between the sides are doubled; no volume is lost but what snapping moves.
+/// In both a move that would invert or flatten a remaining tet is shortened, made by the other end, or left.
+[[nodiscard]] Incision incise(const mesh::TornMesh& body, const CutSurface& surface, const IncisionSettings& settings);
+
+}  // namespace rhexis::fracture

@@ -1,0 +1,102 @@
+#pragma once
+
+/// A multifrontal Cholesky factor of an assembly of element matrices that follows a change of a few elements by
+/// factoring again only what depends on them: the path of the elimination tree from their fronts to its root (Herholz
+/// and Sorkine-Hornung 2020). Some nodes may be kept: they are not eliminated, and what is left on them is the Schur
+/// complement of all the rest (static condensation).
+///
+/// A version never changes; `updated` makes the next one, which shares every front that is the same. So one version can
+/// be solved with while another thread makes the next, and going back costs nothing.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace rhexis::linalg {
+
+using ElementMatrix = Eigen::Matrix<double, 12, 12>;
+using ElementVector = Eigen::Matrix<double, 12, 1>;
+
+/// The elements as they are now: linear tets of four nodes with three dofs each, dof = 3 node + component.
+class ElementSource {
+ public:
+  virtual ~ElementSource() = default;
+  [[nodiscard]] virtual std::int32_t node_count() const = 0;
+  [[nodiscard]] virtual std::int32_t element_count() const = 0;
+  /// False: not part of the sum.
+  [[nodiscard]] virtual bool is_active(std::int32_t element) const = 0;
+  [[nodiscard]] virtual std::array<std::int32_t, 4> nodes(std::int32_t element) const = 0;
+  virtual void stiffness(std::int32_t element, ElementMatrix& out) const = 0;
+  /// Its share of the right-hand side, N; zero when there are no loads.
+  virtual void load(std::int32_t element, ElementVector& out) const = 0;
+  /// Load at a node beside those of the elements, N.
+  [[nodiscard]] virtual Vec3 node_load(std::int32_t node) const = 0;
+  [[nodiscard]] virtual bool is_free(std::int32_t dof) const = 0;  ///< false: held, and left out
+};
+
+/// What has happened to the elements since the version that is updated.
+struct ElementChange {
+  std::vector<std::int32_t> copied;   ///< parent of each appended node
+  std::vector<std::int32_t> touched;  ///< elements that came, went, moved or took other nodes
+  std::vector<std::int32_t> kept;     ///< the nodes to keep from now on (all of them, ascending)
+};
+
+enum class FrontOutcome { ok, not_positive_definite };
+
+class FrontTree {
+ public:
+  /// Orders by nested dissection and factors everything, on all threads. Nodes in `kept` (ascending) must stay kept in
+  /// every later version; what is kept only for a time is named in ElementChange::kept. A node without an active
+  /// element is left out.
+  [[nodiscard]] static std::shared_ptr<const FrontTree> make(const ElementSource& elements,
+                                                             const std::vector<std::int32_t>& kept);
+  /// The next version. `elements` as after the change.
+  [[nodiscard]] std::shared_ptr<const FrontTree> updated(const ElementSource& elements,
+                                                         const ElementChange& change) const;
+  ~FrontTree();
+
+  [[nodiscard]] FrontOutcome outcome() const;
+  /// The free dofs of the kept nodes that have an active element, ascending.
+  [[nodiscard]] const std::vector<std::int32_t>& kept_dofs() const;
+  /// The Schur complement of everything else, kept_dofs() squared, both triangles.
+  [[nodiscard]] const Eigen::MatrixXd& schur() const;
+  /// What the loads leave on kept_dofs() after elimination.
+  [[nodiscard]] const VectorX& schur_load() const;
+  /// y . y of the loads' forward solution.
+  [[nodiscard]] double load_energy() const;
+
+  /// Right-hand sides that are zero at all but a few dofs, as they come out of the forward solve L y = b.
+  struct Forward {
+    std::vector<std::int32_t> front;  ///< fronts that they reach, children before parents
+    std::vector<Eigen::MatrixXd> y;   ///< of those: pivots x columns
+    Eigen::MatrixXd kept;             ///< what is left on kept_dofs(), rows x columns
+    Eigen::MatrixXd gram;             ///< y^T y over all fronts, columns squared
+    VectorX with_load;                ///< y^T (y of the loads), columns
+  };
+  /// b(dof[i], :) = rows(i, :); dofs free, each in the assembly (a dof that is not is an error: RHEXIS_CHECK).
+  [[nodiscard]] Forward forward(std::span<const std::int32_t> dof, const Eigen::MatrixXd& rows) const;
+
+  /// x of all dofs for x on kept_dofs() given, and right-hand side = forward * amount + load * load_amount. Held dofs
+  /// and dofs outside the assembly come out zero. Length 3 * node_count at the time of this version.
+  void backward(const VectorX& x_kept, const Forward* forward, const VectorX& amount, double load_amount,
+                VectorX& x) const;
+
+  /// Fronts in all, and those that the last update factored again.
+  [[nodiscard]] std::size_t front_count() const;
+  [[nodiscard]] std::size_t fronts_made() const;
+  [[nodiscard]] double flops_made() const;
+  /// Held by this version; what it shares with another is counted in both.
+  [[nodiscard]] std::size_t memory_bytes() const;
+
+ private:
+  struct Core;
+  explicit FrontTree(std::unique_ptr<const Core> core);
+  std::unique_ptr<const Core> core_;
+};
+
+}  // namespace rhexis::linalg

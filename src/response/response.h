@@ -1,0 +1,59 @@
+#pragma once
+
+/// How a body answers the point that is held, topology after topology. `exact` solves the torn body; `recorded` (the
+/// thesis) will take the nearest recorded answer. Both are followed by the same calls.
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "base/vec.h"
+#include "mesh/torn_mesh.h"
+
+namespace rhexis::response {
+
+/// Where the next edits will be: the tets within `radius` of a front. A response that keeps a window of the body ready
+/// moves it there.
+struct Focus {
+  Vec3 centre = Vec3::Zero();     ///< m, middle of the front
+  Vec3 direction = Vec3::Zero();  ///< where it runs; zero when unknown
+  double half_length = 0.0;       ///< m, half the extent of the front along itself
+  double radius = 0.0;            ///< m, of the local object
+};
+
+/// What following an edit took.
+struct FollowReport {
+  bool ok = true;  ///< false: the torn body is not stable (a free motion is left); answers are those of before
+  double update_seconds = 0.0;  ///< on the calling thread, all included
+  double wait_seconds = 0.0;    ///< of that, waiting for work in the background
+  bool refreshed = false;       ///< the window moved
+};
+
+class Response {
+ public:
+  virtual ~Response() = default;
+
+  /// The nodes that the hand holds from now on (none: it lets go). Their forces are the columns of what follows.
+  virtual void grasp(std::span<const NodeId> nodes) = 0;
+  /// After the body has taken an edit. `focus`: one per crack that still runs.
+  virtual FollowReport follow(const mesh::MeshEdit& edit, std::span<const Focus> focus) = 0;
+  /// After the body has given an edit back.
+  virtual FollowReport go_back(const mesh::MeshEdit& edit, std::span<const Focus> focus) = 0;
+
+  /// L_cc of the held nodes, m/N, 3 per node squared.
+  [[nodiscard]] virtual const Eigen::MatrixXd& compliance() const = 0;
+  /// Displacement of the held nodes by the loads alone, m, 3 per node.
+  [[nodiscard]] virtual const VectorX& rest() const = 0;
+  /// Displacement (m, 3 per node of `nodes`) by the loads and by forces on the held nodes (N, 3 per held node). Nodes
+  /// within the focus of the last call are cheap.
+  virtual void displacement(std::span<const NodeId> nodes, const VectorX& held_forces, VectorX& out) = 0;
+  /// Of every node of the body, m; zero at nodes out of the solve.
+  virtual void whole_displacement(const VectorX& held_forces, VectorX& out) = 0;
+  /// Elastic energy relative to the equilibrium under the loads alone in the intact body, J, with forces on the held
+  /// nodes.
+  [[nodiscard]] virtual double stored_energy(const VectorX& held_forces) = 0;
+  [[nodiscard]] virtual std::size_t memory_bytes() const = 0;
+};
+
+}  // namespace rhexis::response
