@@ -3,6 +3,8 @@
 /// Where a crack has got to: its front, a polyline across the body. On a plate that is a line along z, of two points
 /// that share one direction; on any other body each point has its own (section 2.3 of the method).
 
+#include <Eigen/Geometry>
+
 #include <vector>
 
 #include "base/vec.h"

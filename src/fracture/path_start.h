@@ -1,0 +1,36 @@
+#pragma once
+
+/// Cracks that are there from the start, and the first crack of a body that has none.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/error.h"
+#include "fracture/crack.h"
+#include "fracture/front_surroundings.h"
+#include "fracture/tet_stress.h"
+
+namespace rhexis::fracture {
+
+struct InitialCrack {
+  std::vector<Crack> cracks;  ///< one per front: see make_crack
+  CutSurface surface;         ///< what to incise
+};
+
+/// The scene's [[crack]]: the plane from `from` to `to` (m), all the way through the body along `through` (any length).
+/// A front stands where the line through `to` passes through the body, one crack per separate stretch; and where the
+/// one through `from` does, when `from` is well inside the body (a slit with two tips). On a plate `through` must be z.
+/// Errors: no way between the points, `through` along it, no front in the body.
+[[nodiscard]] Expected<InitialCrack> make_crack(const Vec3& from, const Vec3& to, const Vec3& through,
+                                                const Surroundings& surroundings);
+
+/// Where a body without a crack tears first: at the tet with a surface face whose largest principal stress is largest,
+/// when that reaches `strength` (Pa). The plane is normal to that stress and the crack runs inward: a plate is cut
+/// through by one mean edge from its rim (a slit of two tips where it is not at the rim), any other body gets half a
+/// disc of one and a half mean edges' radius. `tets` at the hand do not count. Empty when the strength is not reached,
+/// or where the cut would meet nothing.
+[[nodiscard]] std::optional<InitialCrack> start_crack(const mesh::TornMesh& body, std::span<const TetStress> tets,
+                                                      double strength, const Surroundings& surroundings);
+
+}  // namespace rhexis::fracture
