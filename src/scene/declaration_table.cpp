@@ -380,6 +380,12 @@ Section interaction() {
            .range = within(1e-6, 1e6),
            .fallback = "8.9",
            .doc = "What the device can give."},
+          {.name = "contact",
+           .kind = Kind::choice,
+           .fallback = "\"consistent\"",
+           .names = {"consistent", "blend"},
+           .doc = "Force of a point inside a surface triangle: one constraint on it, or the reactions of its vertices "
+                  "blended with the area coordinates."},
       }};
 }
 
@@ -412,6 +418,12 @@ Section pull() {
                .range = within(0.0, 3600.0),
                .fallback = "0.0",
                .doc = "Wait before the hand lets go."},
+              {.name = "mode",
+               .kind = Kind::choice,
+               .fallback = "\"hold\"",
+               .names = {"hold", "push"},
+               .doc = "Held, the point follows the hand; pushed, it gives way only where the hand presses, without "
+                      "friction."},
           }};
 }
 

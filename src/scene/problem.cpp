@@ -6,6 +6,7 @@
 #include "model/stabilisation.h"
 #include "scene/body.h"
 #include "scene/supports.h"
+#include "scene/tractions.h"
 
 namespace rhexis::scene {
 namespace {
@@ -45,14 +46,8 @@ Expected<model::Loading> make_loading(const Scene& scene, const Body& body, cons
   loading.dead_force = VectorX::Zero(static_cast<Eigen::Index>(space.dof_count()));
   const Vec3 weight = scene.material.density * scene.gravity;
   if (!weight.isZero(0.0)) model::add_body_force(body.mesh, space, weight, loading.dead_force);
-  for (const TractionSettings& traction : scene.tractions) {
-    const Expected<std::vector<mesh::TetFace>> faces = faces_of(body, traction.faces);
-    if (!faces) return fail(faces.error());
-    model::add_traction(body.mesh, space, *faces, traction.force, loading.dead_force);
-  }
-  if (!loading.dead_force.allFinite())
-    return fail("the loads are too large for a computer's numbers", "a smaller density, gravity or traction",
-                scene.file);
+  if (Expected<void> done = add_tractions(scene, body, space, loading.dead_force); !done)
+    return fail(std::move(done.error()));
   for (const PressureSettings& pressure : scene.pressures) {
     const Expected<std::vector<mesh::TetFace>> faces = faces_of(body, pressure.faces);
     if (!faces) return fail(faces.error());
@@ -71,7 +66,7 @@ Expected<model::Loading> make_loading(const Scene& scene, const Body& body, cons
 /// What the scene says to `rhexis tear` and `rhexis play` only.
 void warn_of_tearing(const Scene& scene, std::vector<std::string>& warnings) {
   const auto warn = [&](const Place& place, std::string_view section) {
-    const auto unread = place.fail(in_quotes(section) + " is not read by `rhexis solve`, which has no tearing yet");
+    const auto unread = place.fail(in_quotes(section) + " is not read by `rhexis solve`", "`rhexis tear` reads it");
     warnings.push_back(unread.value().message());
   };
   if (scene.fracture) warn(scene.fracture->place, "fracture");
@@ -91,7 +86,7 @@ bool acts(const model::Loading& loading) {
 
 Expected<Problem> build_problem(const Scene& scene) {
   Problem problem;
-  problem.title = scene.title.empty() ? std::filesystem::path(scene.file).stem().string() : scene.title;
+  problem.title = title_of(scene);
   problem.options = scene.solver.options;
   problem.warnings = scene.warnings;
   problem.notes = scene.notes;

@@ -42,7 +42,11 @@ SolverSettings read_solver(const SectionValues& values) {
 }
 
 PullSettings read_pull(const SectionValues& values) {
-  return {values.get<Vec3>("at"), values.get<Vec3>("by"), values.get<double>("seconds"), values.get<double>("hold"),
+  return {values.get<Vec3>("at"),
+          values.get<Vec3>("by"),
+          values.get<double>("seconds"),
+          values.get<double>("hold"),
+          values.get<std::string>("mode") == "push",
           values.place};
 }
 
@@ -106,6 +110,10 @@ Expected<Scene> parse_scene(std::string_view text, const std::string& file, cons
   const Expected<Values> values = validate(*root);
   if (!values) return fail(values.error());
   return settings_of(*values, file);
+}
+
+std::string title_of(const Scene& scene) {
+  return scene.title.empty() ? fs::path(scene.file).stem().string() : scene.title;
 }
 
 Expected<Scene> read_scene(const fs::path& path, const std::vector<std::string>& overrides) {

@@ -42,7 +42,7 @@ constexpr std::string_view kCornerCases = R"(## Corner cases
 * **`mass-spring`** has a Poisson's ratio of 1/4 whatever is asked; a warning says so.
 * **What is not read.** A key that is right in itself but has no effect on what was chosen, such as `beta` with `linear`,
   is a warning, not an error: one scene may be run with several models by `--set model.kind=...`. So are `[fracture]`,
-  `[[crack]]`, `[interaction]` and `[[pull]]` before `rhexis solve`, which has no tearing yet.
+  `[[crack]]`, `[interaction]` and `[[pull]]` before `rhexis solve`; `rhexis tear` reads them.
 * **`beta`.** The stabilisation smooths lambda over a length that grows with beta and the tets; when that is more than a
   quarter of the body's thickness, a warning says so (docs/stabilisation.md).
 * **Bounding box.** The box of sides, fractions and percentages is that of the nodes that belong to a tet. Nodes that belong

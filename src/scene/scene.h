@@ -63,6 +63,7 @@ struct MaterialSettings {
 
 struct ModelChoice {
   model::ModelKind kind = model::ModelKind::hyperelastic;
+  Place kind_place;
   std::optional<double> beta;   ///< empty: "auto"
   double initial_lambda = 0.0;  ///< Pa
   model::CorotatedTangent corotated_tangent = model::CorotatedTangent::exact;
@@ -115,6 +116,7 @@ struct InteractionSettings {
   std::string response;                         ///< "exact", "recorded"
   std::optional<std::filesystem::path> record;  ///< found from here; given with "recorded"
   double max_force = 0.0;                       ///< N
+  bool blend_contact = false;                   ///< the thesis's rule for a point inside a triangle
   std::optional<Place> place;                   ///< empty: the section is left out
 };
 struct PullSettings {
@@ -122,6 +124,7 @@ struct PullSettings {
   Vec3 by = Vec3::Zero();  ///< m
   double seconds = 0.0;
   double hold = 0.0;  ///< s
+  bool push = false;  ///< only where the hand presses, without friction
   Place place;
 };
 
@@ -144,6 +147,9 @@ struct Scene {
   std::vector<std::string> warnings;  ///< one line each, placed: what was given and is not read
   std::vector<std::string> notes;     ///< one line each: what was converted
 };
+
+/// The scene's title; its file's name where it has none.
+[[nodiscard]] std::string title_of(const Scene& scene);
 
 /// Reads and validates; `overrides` are the arguments of `--set`, applied in order. Errors name FILE:LINE, or the
 /// override.

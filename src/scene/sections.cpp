@@ -107,6 +107,7 @@ ModelChoice read_model_section(const SectionValues& values, Scene& scene) {
   ModelChoice choice;
   const std::string& kind = values.get<std::string>("kind");
   choice.kind = model::kind_named(kind);
+  choice.kind_place = values.place_of("kind");
   if (const auto* beta = std::get_if<double>(&values.find("beta")->value)) choice.beta = *beta;
   choice.initial_lambda = values.get<double>("initial_lambda");
   if (values.get<std::string>("corotated_tangent") == "warped")
@@ -172,6 +173,7 @@ Expected<InteractionSettings> read_interaction_section(const SectionValues& valu
   InteractionSettings interaction;
   interaction.response = values.get<std::string>("response");
   interaction.max_force = values.get<double>("max_force");
+  interaction.blend_contact = values.get<std::string>("contact") == "blend";
   if (values.given) interaction.place = values.place;
   if (const Setting* record = values.find("record")) interaction.record = folder / std::get<std::string>(record->value);
   if (interaction.response == "recorded" && !interaction.record)

@@ -173,7 +173,7 @@ TEST(Problem, NothingActingIsWarnedOf) {
       spoil("z = \"-10%\"", "z = 0", spoil("gravity = [0.0, 0.0, -9.81]", "", spoil("beta = 100.0", "beta = 0")));
   EXPECT_THAT(build(idle).warnings, ElementsAre("s.toml: nothing acts on the body: no load, and no support moves"));
   EXPECT_THAT(build(idle + "[[pull]]\nat = [0, 0, 0]\nby = [0, 0, 1]\n").warnings,
-              ElementsAre("s.toml:34: 'pull' is not read by `rhexis solve`, which has no tearing yet"));
+              ElementsAre("s.toml:34: 'pull' is not read by `rhexis solve` (`rhexis tear` reads it)"));
 }
 
 TEST(Problem, WhatIsSaidOfTearingIsNotRead) {
@@ -182,10 +182,10 @@ TEST(Problem, WhatIsSaidOfTearingIsNotRead) {
   const std::string text = spoil("beta = 100.0", "beta = 0") + "[fracture]\nstrength = 1e5\n" + crack + crack +
                            "[interaction]\nmax_force = 3.0\n" + pull + pull;
   EXPECT_THAT(build(text).warnings,
-              ElementsAre("s.toml:34: 'fracture' is not read by `rhexis solve`, which has no tearing yet",
-                          "s.toml:36: 'crack' is not read by `rhexis solve`, which has no tearing yet",
-                          "s.toml:42: 'interaction' is not read by `rhexis solve`, which has no tearing yet",
-                          "s.toml:44: 'pull' is not read by `rhexis solve`, which has no tearing yet"));
+              ElementsAre("s.toml:34: 'fracture' is not read by `rhexis solve` (`rhexis tear` reads it)",
+                          "s.toml:36: 'crack' is not read by `rhexis solve` (`rhexis tear` reads it)",
+                          "s.toml:42: 'interaction' is not read by `rhexis solve` (`rhexis tear` reads it)",
+                          "s.toml:44: 'pull' is not read by `rhexis solve` (`rhexis tear` reads it)"));
 }
 
 TEST(Problem, AFreeRimUnderPressureTakesTheDirectSolver) {

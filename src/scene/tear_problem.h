@@ -1,0 +1,37 @@
+#pragma once
+
+/// A scene that has met its mesh, for tearing: all that an interaction needs.
+
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "mesh/tet_mesh.h"
+#include "model/loading.h"
+#include "scene/scene.h"
+
+namespace rhexis::scene {
+
+struct TearProblem {
+  std::string title;   ///< of the scene; its file's name where it has none
+  mesh::TetMesh mesh;  ///< with the scene's sets
+  material::Elastic elastic;
+  Vec3 body_force = Vec3::Zero();              ///< rho0 g, N/m3
+  std::vector<model::PrescribedDof> supports;  ///< ascending; nodes that no tet has are held
+  VectorX nodal_force;                         ///< of the tractions, N, 3 per node
+  FractureSettings fracture;
+  std::vector<CrackSettings> cracks;
+  InteractionSettings interaction;
+  std::vector<PullSettings> pulls;
+  std::vector<std::string> warnings;  ///< one line each
+  std::vector<std::string> notes;     ///< one line each
+};
+
+/// What makes a scene one for `rhexis tear`: it says when the body tears.
+[[nodiscard]] bool is_for_tearing(const Scene& scene);
+
+/// Reads or generates the mesh and holds the scene against it. Errors beside those of build_problem: no `[fracture]`,
+/// no `[[pull]]`, a model other than `linear`, a pressure, a response that is not there.
+[[nodiscard]] Expected<TearProblem> build_tear_problem(const Scene& scene);
+
+}  // namespace rhexis::scene

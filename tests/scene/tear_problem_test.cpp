@@ -1,0 +1,104 @@
+#include "scene/tear_problem.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/scene/scene_text.h"
+
+namespace rhexis::scene {
+namespace {
+
+const std::string kPlate = R"(gravity = [0.0, 0.0, -9.81]
+[mesh]
+generate = "plate"
+size = [0.24, 0.24, 0.01]
+nodes = 200
+[material]
+density = 1000.0
+young = 1.0e6
+poisson = 0.4
+[model]
+kind = "linear"
+[[support]]
+set = "+x"
+x = 0.0
+y = 0.0
+z = 0.0
+[[traction]]
+side = "-x"
+force = [-0.5, 0.0, 0.0]
+[fracture]
+strength = 0.4e6
+[[crack]]
+from = [0.12, 0.0, 0.0]
+to = [0.12, 0.06, 0.0]
+[[pull]]
+at = [0.10, 0.0, 0.005]
+by = [-0.12, 0.0, 0.0]
+)";
+
+Expected<TearProblem> build(const std::string& text) {
+  const Expected<Scene> scene = parse_scene(text, "s.toml");
+  EXPECT_TRUE(scene.has_value()) << scene.error().message();
+  return build_tear_problem(*scene);
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(TearProblem, HoldsWhatAnInteractionNeeds) {
+  const Expected<TearProblem> problem = build(kPlate);
+  ASSERT_TRUE(problem.has_value()) << problem.error().message();
+  EXPECT_EQ(problem->body_force, Vec3(0.0, 0.0, -9810.0));
+  EXPECT_EQ(problem->fracture.advance_threshold, 0.2e6);
+  ASSERT_EQ(problem->pulls.size(), 1U);
+  EXPECT_FALSE(problem->pulls[0].push);
+  EXPECT_FALSE(problem->supports.empty());
+  // The traction alone: the weight goes with the tets, which may be torn off.
+  Vec3 sum = Vec3::Zero();
+  for (Eigen::Index node = 0; node < problem->nodal_force.size() / 3; ++node)
+    sum += problem->nodal_force.segment<3>(3 * node);
+  EXPECT_LT((sum - Vec3(-0.5, 0.0, 0.0)).norm(), 1e-14);  // a few hundred sums of 2^-53
+}
+
+struct BadScene {
+  std::string from, to, message;
+};
+
+TEST(TearProblem, SaysWhatIsMissingOrCannotBe) {
+  const std::vector<BadScene> table{
+      {"[fracture]\nstrength = 0.4e6\n", "",
+       "s.toml: the scene does not say when the body tears (add a [fracture] with 'strength' or 'toughness')"},
+      {"[[pull]]\nat = [0.10, 0.0, 0.005]\nby = [-0.12, 0.0, 0.0]\n", "",
+       "s.toml: nothing pulls at the body (add a [[pull]])"},
+      {"\"linear\"", "\"corotated\"",
+       "s.toml:11: a body with model 'corotated' cannot be torn yet (kind = \"linear\")"},
+      {"[fracture]", "[[pressure]]\nside = \"-x\"\nvalue = 10.0\n[fracture]",
+       "s.toml:21: a pressure follows the surface, which the linear model cannot (a [[traction]] in a fixed "
+       "direction)"},
+      {"[[crack]]", "[interaction]\nresponse = \"recorded\"\nrecord = \"a.h5\"\n[[crack]]",
+       "s.toml:22: response = \"recorded\" is not there yet (response = \"exact\")"},
+      {"[[support]]\nset = \"+x\"\nx = 0.0\ny = 0.0\nz = 0.0\n", "",
+       "s.toml: nothing holds the body (add a [[support]])"}};
+  for (const BadScene& bad : table) {
+    const Expected<Scene> scene = parse_scene(replaced(kPlate, bad.from, bad.to), "s.toml");
+    ASSERT_TRUE(scene.has_value()) << scene.error().message();
+    const Expected<TearProblem> problem = build_tear_problem(*scene);
+    ASSERT_FALSE(problem.has_value()) << bad.message;
+    EXPECT_EQ(problem.error().message(), bad.message);
+  }
+}
+
+TEST(TearProblem, PushAndBlendAreRead) {
+  const Expected<TearProblem> problem =
+      build(replaced(replaced(kPlate, "[[crack]]", "[interaction]\ncontact = \"blend\"\n[[crack]]"), "[[pull]]",
+                     "[[pull]]\nmode = \"push\""));
+  ASSERT_TRUE(problem.has_value()) << problem.error().message();
+  EXPECT_TRUE(problem->interaction.blend_contact);
+  EXPECT_TRUE(problem->pulls[0].push);
+}
+
+}  // namespace
+}  // namespace rhexis::scene
