@@ -9,6 +9,12 @@
 
 namespace rhexis {
 namespace fs = std::filesystem;
+namespace {
+
+/// Between the name of a file and the id of the process that writes it: two runs into one folder share no temporary.
+constexpr std::string_view kTemporary = ".part";
+
+}  // namespace
 
 Expected<void> write_atomically(const fs::path& path, const std::function<Expected<void>(const fs::path&)>& write) {
   std::error_code code;
@@ -16,8 +22,7 @@ Expected<void> write_atomically(const fs::path& path, const std::function<Expect
     fs::create_directories(path.parent_path(), code);
     if (code) return fail("cannot make folder '" + path.parent_path().string() + "': " + code.message());
   }
-  // The process id keeps two runs into one folder from sharing a temporary.
-  const fs::path temporary = path.string() + ".part" + std::to_string(::getpid());
+  const fs::path temporary = path.string() + std::string(kTemporary) + std::to_string(::getpid());
   Expected<void> written = write(temporary);
   if (!written) {
     fs::remove(temporary, code);
@@ -43,6 +48,14 @@ Expected<void> write_atomically(const fs::path& path, std::string_view contents)
                   path.string());
     return {};
   });
+}
+
+std::string_view finished_name(std::string_view name) {
+  const std::size_t end = name.rfind(kTemporary);
+  if (end == std::string_view::npos) return name;
+  const std::string_view id = name.substr(end + kTemporary.size());
+  const bool is_id = !id.empty() && id.find_first_not_of("0123456789") == std::string_view::npos;
+  return is_id ? name.substr(0, end) : name;
 }
 
 }  // namespace rhexis

@@ -18,4 +18,8 @@ Expected<void> write_atomically(const std::filesystem::path& path,
 /// The same for contents that are in memory.
 Expected<void> write_atomically(const std::filesystem::path& path, std::string_view contents);
 
+/// A program that is killed leaves its temporary behind. The name of the file that it would have become, without
+/// folder; `name` itself when it is not that of a temporary.
+[[nodiscard]] std::string_view finished_name(std::string_view name);
+
 }  // namespace rhexis

@@ -1,5 +1,7 @@
 #include "result/result_folder.h"
 
+#include <functional>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -9,17 +11,27 @@
 namespace rhexis::result {
 
 namespace fs = std::filesystem;
+namespace {
+
+/// Removes the files of `folder` whose name, as it is or as it would be once complete, is of the kind asked for.
+void remove_files(const fs::path& folder, const std::function<bool(std::string_view)>& is_of_a_run) {
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code))
+    if (is_of_a_run(finished_name(entry.path().filename().string()))) fs::remove(entry.path(), code);
+}
+
+}  // namespace
 
 Expected<ResultFolder> ResultFolder::open(const fs::path& path) {
   std::error_code code;
   fs::create_directories(path / "steps", code);
   if (code)
     return fail("cannot make the folder: " + code.message(), "choose a folder that can be written to", path.string());
-  for (const char* stale : {"result.vtkhdf", "summary.json", "steps.pvd"}) fs::remove(path / stale, code);
-  for (const fs::directory_entry& entry : fs::directory_iterator(path / "steps", code)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("step_") && name.ends_with(".vtu")) fs::remove(entry.path(), code);
-  }
+  remove_files(path, [](std::string_view name) {
+    return name == "result.vtkhdf" || name == "summary.json" || name == "steps.pvd";
+  });
+  remove_files(path / "steps",
+               [](std::string_view name) { return name.starts_with("step_") && name.ends_with(".vtu"); });
   // An empty series: a run whose first step fails leaves one too, and a folder that cannot be written to is known now.
   if (const Expected<void> written = mesh::write_series(path / "steps.pvd", {}); !written) return fail(written.error());
   return ResultFolder(path);

@@ -18,8 +18,8 @@ namespace rhexis::result {
 
 class ResultFolder {
  public:
-  /// Makes the folder and removes the result, summary and steps of an earlier run in it, so that nothing stale is taken
-  /// for new.
+  /// Makes the folder and removes the result, summary and steps of an earlier run in it, half-written ones of a run
+  /// that was killed too, so that nothing stale is taken for new and nothing piles up.
   static Expected<ResultFolder> open(const std::filesystem::path& path);
 
   /// Writes steps/step_NNNN.vtu and the series up to it. `load`: fraction of the whole load, the series' value.

@@ -60,7 +60,8 @@ Report solve_equilibrium(const model::Model& model, const model::Loading& loadin
       report.outcome = std::max(report.outcome, step.outcome);
       if (halvings > 0 && step.iterations <= kEasyIterations) --halvings;
       report.steps.push_back(step);
-      if (observer && !observer(report.steps.back(), state, report.reaction)) {
+      const bool go_on = !observer || observer(report.steps.back(), state, report.reaction);
+      if (!go_on && report.load < 1.0 - kSameLoad) {
         report.outcome = Outcome::stopped;
         report.why = fmt::format("stopped at load fraction {:.4g} of the whole", target);
         break;

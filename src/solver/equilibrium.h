@@ -59,7 +59,7 @@ struct Report {
 };
 
 /// Called after every accepted step, for progress and for results per step, with the force of the supports on the body
-/// (N, 3 per displacement node). Returning false stops the run there.
+/// (N, 3 per displacement node). Returning false stops the run there; after the last step there is nothing to stop.
 using StepObserver = std::function<bool(const StepReport&, const model::State&, const VectorX& reaction)>;
 
 /// Starts from `state` (the model's initial_state, or any other) and leaves the last converged one in it.

@@ -94,6 +94,20 @@ TEST_F(AtomicFile, FileWhereAFolderShouldBeIsAnError) {
   EXPECT_NE(written.error().message().find((folder_ / "x").string()), std::string::npos);
 }
 
+TEST_F(AtomicFile, TemporariesTellWhatTheyWouldBecome) {
+  std::string temporary;
+  const auto write = [&](const fs::path& path) -> Expected<void> {
+    temporary = path.filename();
+    std::ofstream(path) << "x";
+    return {};
+  };
+  ASSERT_TRUE(write_atomically(folder_ / "x.part7.txt", write).has_value());
+  EXPECT_NE(temporary, "x.part7.txt");
+  EXPECT_EQ(finished_name(temporary), "x.part7.txt");
+  for (const std::string_view name : {"x.txt", "x.part", "x.part7.txt", "x.part7a", ""})
+    EXPECT_EQ(finished_name(name), name);
+}
+
 TEST(AtomicFileOnAFullDisk, IsAnError) {
   // /dev/full takes no byte. The rename is never reached: the temporary, a link to it, is removed.
   const fs::path link = fs::path(testing::TempDir()) / ("rhexis-full.part" + std::to_string(::getpid()));
