@@ -54,4 +54,7 @@ class TornMesh {
   std::vector<MeshEdit> history_;
 };
 
+/// Faces of the tets in the solve that no other such tet shares; ordered. O(n).
+[[nodiscard]] std::vector<TetFace> solved_surface(const TornMesh& body);
+
 }  // namespace rhexis::mesh

@@ -6,7 +6,7 @@
 #include <bit>
 #include <vector>
 
-#include "mesh/generate.h"
+#include "mesh/surface.h"
 #include "tests/support/kuhn_box.h"
 
 namespace rhexis::mesh {
@@ -91,6 +91,24 @@ TEST(TornMesh, UndoReturnsEveryBitOfEveryTopology) {
     body.undo();
     EXPECT_EQ(bits_of(body), before[body.topology()]) << body.topology();
   }
+}
+
+TEST(TornMesh, SurfaceOfTheSolveIsThatOfAMeshOfThoseTets) {
+  TornMesh body(test::make_kuhn_box({.cells = {3, 3, 2}}));
+  EXPECT_EQ(solved_surface(body), find_faces(body.mesh()).boundary);
+  for (std::size_t k = 0; k < 6; ++k) body.apply(some_edit(body, 29 * k + 3));
+  TetMesh solved;  // with the tets in the solve alone, by the table of faces that whole meshes have
+  solved.nodes = body.mesh().nodes;
+  std::vector<TetId> number;
+  for (std::size_t t = 0; t < body.mesh().tet_count(); ++t) {
+    if (!body.is_solved(TetId(t))) continue;
+    solved.tets.push_back(body.mesh().tets[t]);
+    number.emplace_back(t);
+  }
+  std::vector<TetFace> expected = find_faces(solved).boundary;
+  for (TetFace& face : expected) face.tet = number[face.tet.index()];
+  EXPECT_EQ(solved_surface(body), expected);
+  EXPECT_GT(expected.size(), find_faces(body.mesh()).boundary.size());
 }
 
 TEST(TornMesh, RefusesAnEditThatDoesNotFit) {
