@@ -65,36 +65,42 @@ Place place_of(const toml::source_region& region, const std::shared_ptr<const st
   return {file, static_cast<int>(region.begin.line)};
 }
 
-Node convert(const toml::node& from, const std::shared_ptr<const std::string>& file);
+void convert(const toml::node& from, const std::shared_ptr<const std::string>& file, Node& node);
 
-Table convert_table(const toml::table& from, const std::shared_ptr<const std::string>& file) {
-  struct Item {
-    toml::source_position begin;
-    const toml::key* key;
-    const toml::node* node;
-  };
+struct Item {
+  toml::source_position begin;
+  const toml::key* key;
+  const toml::node* node;
+};
+
+/// toml++ sorts by key; a reader meets mistakes in the order of the document. Kept out of the recursion below, whose
+/// every level would otherwise hold the variables of the sort.
+[[gnu::noinline]] std::vector<Item> in_order_of_document(const toml::table& from) {
   std::vector<Item> items;
   for (const auto& [key, node] : from) items.push_back({key.source().begin, &key, &node});
-  // toml++ sorts by key; a reader meets mistakes in the order of the document.
   std::stable_sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
     return std::tie(a.begin.line, a.begin.column) < std::tie(b.begin.line, b.begin.column);
   });
-  Table table;
-  for (const Item& item : items) {
-    table.push_back({std::string(item.key->str()), convert(*item.node, file)});
-    if (item.begin.line > 0) table.back().node.place.line = static_cast<int>(item.begin.line);
-  }
-  return table;
+  return items;
 }
 
-Node convert(const toml::node& from, const std::shared_ptr<const std::string>& file) {
-  Node node{.value = DateOrTime{}, .place = place_of(from.source(), file), .raw = {}};
+// Both fill in place, which keeps the frames of the recursion small.
+void convert_table(const toml::table& from, const std::shared_ptr<const std::string>& file, Table& table) {
+  for (const Item& item : in_order_of_document(from)) {
+    Entry& entry = table.emplace_back();
+    entry.key = item.key->str();
+    convert(*item.node, file, entry.node);
+    if (item.begin.line > 0) entry.node.place.line = static_cast<int>(item.begin.line);
+  }
+}
+
+void convert(const toml::node& from, const std::shared_ptr<const std::string>& file, Node& node) {
+  node.place = place_of(from.source(), file);
   if (const toml::table* table = from.as_table()) {
-    node.value = convert_table(*table, file);
+    convert_table(*table, file, node.value.emplace<Table>());
   } else if (const toml::array* array = from.as_array()) {
-    Array items;
-    for (const toml::node& item : *array) items.push_back(convert(item, file));
-    node.value = std::move(items);
+    Array& items = node.value.emplace<Array>();
+    for (const toml::node& item : *array) convert(item, file, items.emplace_back());
   } else if (const auto* text = from.as_string()) {
     node.value = text->get();
   } else if (const auto* integer = from.as_integer()) {
@@ -103,8 +109,9 @@ Node convert(const toml::node& from, const std::shared_ptr<const std::string>& f
     node.value = number->get();
   } else if (const auto* boolean = from.as_boolean()) {
     node.value = boolean->get();
+  } else {
+    node.value = DateOrTime{};
   }
-  return node;
 }
 
 /// The complaint of toml++ without the words it begins with, in the words of a scene where it has its own.
@@ -179,7 +186,9 @@ Expected<Node> parse_document(std::string_view text, const std::string& name) {
     return fail("the scene nests too deep", fmt::format("at most {} dots in its keys", kMaxKeyDots), name);
   try {
     const auto file = std::make_shared<const std::string>(name);
-    return Node{.value = convert_table(toml::parse(text), file), .place = {file, 0}, .raw = {}};
+    Node root{.value = Table{}, .place = {file, 0}, .raw = {}};
+    convert_table(toml::parse(text), file, *root.as<Table>());
+    return root;
   } catch (const toml::parse_error& error) {
     return fail(in_our_words(error.description()).at(name, static_cast<int>(error.source().begin.line)));
   } catch (const ParserGaveUp&) {
