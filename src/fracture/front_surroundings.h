@@ -25,11 +25,13 @@ class Surroundings {
   [[nodiscard]] bool is_plate() const { return plate_; }
   [[nodiscard]] const mesh::BoundingBox& box() const { return box_; }
 
-  /// After the body has taken an edit (or before it gives it back: not needed, moves are only widened).
-  void follow(const mesh::MeshEdit& edit);
+  /// After the body has taken an edit. Not needed when it gives one back.
+  void follow(const mesh::MeshEdit& edit, const mesh::TornMesh& body);
 
   /// Tets in the solve whose centroid is within `radius` (m) of the front's polyline, ascending.
   [[nodiscard]] std::vector<TetId> tets_near(const mesh::TornMesh& body, const Crack& crack, double radius) const;
+  /// Tets in the solve whose own box meets the box from..to (m), as they are now; ascending.
+  [[nodiscard]] std::vector<TetId> tets_meeting(const mesh::TornMesh& body, const Vec3& from, const Vec3& to) const;
 
   struct Interval {
     double from = 0.0;  ///< part of the way, 0 to 1
