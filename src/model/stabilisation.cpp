@@ -7,10 +7,10 @@ namespace rhexis::model {
 namespace {
 
 /// Smallest Rayleigh quotient of the jump matrix (beta / kappa = 1) against the volumes over the spurious pressures,
-/// the null space of B: measured 4.6 to 13 on five families of meshes, a little less on modes next to it. No unit, no
-/// h.
+/// the null space of B: measured 4.56 to 15.6 on four families of meshes, a little less on modes next to it. No unit,
+/// no h.
 constexpr double kSpuriousJump = 4.0;
-/// On a long wave the jump matrix acts like -div(D grad) with D between 0.4 and 0.62 h^2.
+/// On a long wave the jump matrix acts like -div(D grad) with D = 0.50 to 0.71 h^2 on the same families.
 constexpr double kJumpDiffusion = 0.5;
 
 /// The Schur complement of a pressure wave in an unbounded body, 1/Pa: (4/3) mu grad div u = -grad lambda.

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <system_error>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -26,10 +27,22 @@ inline std::string slurp(const std::filesystem::path& path) {
   return text.str();
 }
 
+/// The folder of this test program; gone when it ends.
+inline const std::filesystem::path& folder_of_the_program() {
+  struct Folder {
+    std::filesystem::path path = std::filesystem::temp_directory_path() / ("rhexis-" + std::to_string(::getpid()));
+    ~Folder() {
+      std::error_code ignored;
+      std::filesystem::remove_all(path, ignored);
+    }
+  };
+  static const Folder folder;
+  return folder.path;
+}
+
 /// A folder of its own for one test, emptied first.
 inline std::filesystem::path fresh_folder(const std::string& name) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("rhexis-" + std::to_string(::getpid())) / name;
+  const std::filesystem::path folder = folder_of_the_program() / name;
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;
