@@ -1,0 +1,280 @@
+#include "linalg/front.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "linalg/front_blas.h"
+#include "linalg/one_thread.h"
+
+namespace rhexis::linalg {
+namespace {
+
+bool contains(std::span<const NodeKey> sorted, NodeKey key) {
+  return std::binary_search(sorted.begin(), sorted.end(), key);
+}
+
+/// A front while it is made.
+class FrontMaker {
+ public:
+  explicit FrontMaker(const FrontInput& input) : in_(input), front_(std::make_shared<Front>()), f_(*front_) {}
+
+  std::shared_ptr<const Front> make() {
+    find_nodes();
+    find_dofs();
+    f_.panel = std::make_unique<double[]>(static_cast<std::size_t>(f_.ld()) * static_cast<std::size_t>(f_.pivots));
+    f_.update = LowerTriangle(f_.boundary() + 1);
+    diagonal_.assign(f_.dofs.size(), 0.0);
+    add_elements();
+    add_node_loads();
+    for (const auto& [component, before] : in_.before) add_update(component, *before);
+    factor();
+    f_.assembled.assign(diagonal_.begin() + f_.pivots, diagonal_.end());
+    return front_;
+  }
+
+ private:
+  void find_nodes();
+  void find_dofs();
+  void add_elements();
+  void add_node_loads();
+  void add_update(std::int32_t component, const Front& before);
+  [[nodiscard]] std::vector<Run> find_runs(const Front& before) const;
+  void factor();
+  void subtract_squares();
+  [[nodiscard]] std::int32_t first_dof(NodeKey key) const;
+  [[nodiscard]] double& panel(std::int32_t row, std::int32_t column) {
+    return f_
+        .panel[static_cast<std::size_t>(column) * static_cast<std::size_t>(f_.ld()) + static_cast<std::size_t>(row)];
+  }
+
+  const FrontInput& in_;
+  std::shared_ptr<Front> front_;
+  Front& f_;
+  std::vector<std::int32_t> elements_;   // those assembled here
+  std::vector<std::int32_t> first_dof_;  // per node, where its dofs begin
+  std::vector<double> diagonal_;         // per dof, what elements have put there
+};
+
+void FrontMaker::find_nodes() {
+  std::vector<NodeKey> all;
+  for (const std::int32_t element : in_.layout.clique(in_.component).elements) {
+    const std::size_t count = all.size();
+    bool kept = true;
+    for (const std::int32_t node : in_.source.nodes(element)) {
+      if (!has_unknowns(in_.source, node)) continue;
+      all.push_back(in_.layout.key(node));
+      kept = kept && contains(in_.kept, all.back());
+    }
+    if (kept) {
+      all.resize(count);
+      f_.set_aside.push_back(element);
+    } else {
+      elements_.push_back(element);
+    }
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  for (const auto& [component, before] : in_.before) {
+    const std::span<const NodeKey> more = before->boundary_keys();
+    const auto middle = static_cast<std::ptrdiff_t>(all.size());
+    all.insert(all.end(), more.begin(), more.end());
+    std::inplace_merge(all.begin(), all.begin() + middle, all.end());
+  }
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  const auto stays = [&](NodeKey key) { return contains(in_.beyond, key) || contains(in_.kept, key); };
+  std::vector<NodeKey> boundary;
+  f_.nodes.reserve(all.size());
+  for (const NodeKey key : all) (stays(key) ? boundary : f_.nodes).push_back(key);
+  f_.pivot_nodes = f_.nodes.size();
+  f_.nodes.insert(f_.nodes.end(), boundary.begin(), boundary.end());
+}
+
+void FrontMaker::find_dofs() {
+  f_.dofs.reserve(3 * f_.nodes.size());
+  first_dof_.reserve(f_.nodes.size());
+  for (std::size_t i = 0; i < f_.nodes.size(); ++i) {
+    if (i == f_.pivot_nodes) f_.pivots = f_.size();
+    first_dof_.push_back(f_.size());
+    for (std::int32_t dof = 3 * node_of(f_.nodes[i]), c = 0; c < 3; ++c, ++dof) {
+      if (in_.source.is_free(dof)) f_.dofs.push_back(dof);
+    }
+  }
+  if (f_.pivot_nodes == f_.nodes.size()) f_.pivots = f_.size();
+}
+
+std::int32_t FrontMaker::first_dof(NodeKey key) const {
+  const auto middle = f_.nodes.begin() + static_cast<std::ptrdiff_t>(f_.pivot_nodes);
+  auto at = std::lower_bound(f_.nodes.begin(), middle, key);
+  if (at == middle || *at != key) at = std::lower_bound(middle, f_.nodes.end(), key);
+  return first_dof_[static_cast<std::size_t>(at - f_.nodes.begin())];
+}
+
+void FrontMaker::add_elements() {
+  ElementMatrix K;
+  ElementVector load;
+  std::array<std::int32_t, 12> at{};
+  const std::int32_t p = f_.pivots;
+  for (const std::int32_t element : elements_) {
+    in_.source.stiffness(element, K);
+    in_.source.load(element, load);
+    const std::array<std::int32_t, 4> nodes = in_.source.nodes(element);
+    for (std::size_t a = 0; a < 4; ++a) {
+      std::int32_t next = has_unknowns(in_.source, nodes[a]) ? first_dof(in_.layout.key(nodes[a])) : -1;
+      for (std::size_t c = 0; c < 3; ++c) {
+        at[3 * a + c] = in_.source.is_free(3 * nodes[a] + static_cast<std::int32_t>(c)) ? next++ : -1;
+      }
+    }
+    for (std::size_t j = 0; j < 12; ++j) {
+      const std::int32_t column = at[j];
+      if (column < 0) continue;
+      const auto col = static_cast<Eigen::Index>(j);
+      double* const to = column < p ? &panel(0, column) : f_.update.column(column - p) - p;
+      for (std::size_t i = 0; i < 12; ++i) {
+        if (at[i] >= column) to[at[i]] += K(static_cast<Eigen::Index>(i), col);
+      }
+      to[f_.size()] += load[col];
+      diagonal_[static_cast<std::size_t>(column)] += K(col, col);
+    }
+  }
+}
+
+/// A node's own load is added where the node is eliminated.
+void FrontMaker::add_node_loads() {
+  for (std::int32_t j = 0; j < f_.pivots; ++j) {
+    const std::int32_t dof = f_.dofs[static_cast<std::size_t>(j)];
+    panel(f_.size(), j) += in_.source.node_load(dof / 3)[dof % 3];
+  }
+}
+
+std::vector<Run> FrontMaker::find_runs(const Front& before) const {
+  std::vector<Run> runs;
+  const std::span<const NodeKey> theirs = before.boundary_keys();
+  std::size_t pivot = 0;
+  std::size_t boundary = f_.pivot_nodes;
+  std::int32_t from = 0;
+  for (const NodeKey key : theirs) {
+    while (pivot < f_.pivot_nodes && f_.nodes[pivot] < key) ++pivot;
+    while (boundary < f_.nodes.size() && f_.nodes[boundary] < key) ++boundary;
+    const std::size_t at = pivot < f_.pivot_nodes && f_.nodes[pivot] == key ? pivot : boundary;
+    const std::int32_t to = first_dof_[at];
+    const std::int32_t end = at + 1 < first_dof_.size() ? first_dof_[at + 1] : f_.size();
+    if (!runs.empty() && runs.back().to + runs.back().length == to && to != f_.pivots) {
+      runs.back().length += end - to;
+    } else {
+      runs.push_back({from, to, end - to});
+    }
+    from += end - to;
+  }
+  return runs;
+}
+
+/// Extend-add. What a front hands on is ordered as here, but for the nodes that became pivots or have ceased to be kept
+/// in between, so that an entry below the diagonal may come to lie above it only between a boundary and a pivot row.
+void FrontMaker::add_update(std::int32_t component, const Front& before) {
+  std::vector<Run> runs = find_runs(before);
+  const LowerTriangle& U = before.update;
+  const std::int32_t p = f_.pivots;
+  const std::int32_t load = before.boundary();
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    for (std::int32_t t = 0; t < runs[r].length; ++t) {
+      const double* const column = U.column(runs[r].from + t);
+      const std::int32_t j = runs[r].to + t;
+      double* const to = j < p ? &panel(0, j) : f_.update.column(j - p) - p;
+      for (std::size_t s = r; s < runs.size(); ++s) {
+        const std::int32_t skip = s == r ? t : 0;
+        const double* const a = column + runs[s].from + skip;
+        const std::int32_t i = runs[s].to + skip;
+        const std::int32_t count = runs[s].length - skip;
+        if (i < p && j >= p) {
+          for (std::int32_t k = 0; k < count; ++k) panel(j, i + k) += a[k];
+        } else {
+          double* const b = to + i;
+          for (std::int32_t k = 0; k < count; ++k) b[k] += a[k];
+        }
+      }
+      to[f_.size()] += column[load];
+      diagonal_[static_cast<std::size_t>(j)] += before.assembled[static_cast<std::size_t>(runs[r].from + t)];
+    }
+  }
+  f_.update.column(f_.boundary())[f_.boundary()] += U.column(load)[load];
+  f_.incoming.push_back({component, std::move(runs)});
+}
+
+void FrontMaker::factor() {
+  const double p = f_.pivots;
+  const double b = f_.boundary() + 1;
+  f_.flops = p * p * p / 3.0 + p * p * b + p * b * b;
+  if (f_.pivots == 0) return;
+  stay_on_one_thread();
+  const int pivots = f_.pivots;
+  const int below = f_.boundary() + 1;
+  const int ld = f_.ld();
+  int info = 0;
+  dpotrf_("L", &pivots, f_.panel.get(), &ld, &info);
+  f_.positive_definite = info == 0;
+  for (std::int32_t j = 0; j < f_.pivots && f_.positive_definite; ++j) {
+    const double pivot = panel(j, j) * panel(j, j);
+    // Also false for what is not a number.
+    f_.positive_definite = pivot > in_.null_pivot * diagonal_[static_cast<std::size_t>(j)] && std::isfinite(pivot);
+  }
+  if (!f_.positive_definite) return;
+  const double one = 1.0;
+  dtrsm_("R", "L", "T", "N", &below, &pivots, &one, f_.panel.get(), &ld, f_.panel.get() + pivots, &ld);
+  subtract_squares();
+}
+
+void FrontMaker::subtract_squares() {
+  const auto one_block = [&](std::size_t block) {
+    const int b = static_cast<int>(block);
+    const double minus = -1.0;
+    const double one = 1.0;
+    const int columns = f_.update.columns(b);
+    const int rows = f_.update.rows(b);
+    const int rest = rows - columns;
+    const int ld = f_.ld();
+    const double* const L = f_.panel.get() + f_.pivots + LowerTriangle::first_column(b);
+    double* const U = f_.update.block(b);
+    dsyrk_("L", "N", &columns, &f_.pivots, &minus, L, &ld, &one, U, &rows);
+    if (rest > 0) {
+      dgemm_("N", "T", &rest, &columns, &f_.pivots, &minus, L + columns, &ld, L, &ld, &one, U + columns, &rows);
+    }
+  };
+  const auto blocks = static_cast<std::size_t>(f_.update.blocks());
+  if (in_.may_fork) {
+    parallel_for(blocks, one_block);
+  } else {
+    for (std::size_t block = 0; block < blocks; ++block) one_block(block);
+  }
+}
+
+}  // namespace
+
+std::int32_t Front::find_pivot(NodeKey node, std::int32_t dof) const {
+  if (!contains(pivot_keys(), node)) return -1;
+  const auto end = dofs.begin() + pivots;
+  return static_cast<std::int32_t>(std::find(dofs.begin(), end, dof) - dofs.begin());
+}
+
+std::size_t Front::memory_bytes() const {
+  std::size_t runs = 0;
+  for (const Incoming& from : incoming) runs += from.runs.capacity();
+  return sizeof(Front) + sizeof(NodeKey) * nodes.capacity() +
+         sizeof(std::int32_t) * (dofs.capacity() + set_aside.capacity()) + sizeof(Run) * runs +
+         sizeof(double) * (static_cast<std::size_t>(ld()) * static_cast<std::size_t>(pivots) + assembled.capacity()) +
+         update.memory_bytes();
+}
+
+bool lies_in_kept(const ElementSource& source, const FrontLayout& layout, std::span<const NodeKey> kept,
+                  std::int32_t element) {
+  const std::array<std::int32_t, 4> nodes = source.nodes(element);
+  return std::all_of(nodes.begin(), nodes.end(), [&](std::int32_t node) {
+    return !has_unknowns(source, node) || contains(kept, layout.key(node));
+  });
+}
+
+std::shared_ptr<const Front> make_front(const FrontInput& input) { return FrontMaker(input).make(); }
+
+}  // namespace rhexis::linalg

@@ -1,0 +1,155 @@
+// Forward and backward substitution with the fronts of one version.
+
+#include <algorithm>
+#include <map>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "linalg/front_blas.h"
+#include "linalg/front_core.h"
+
+namespace rhexis::linalg {
+namespace {
+
+std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+
+/// y of the loads, as it stands in the panel's last row.
+Eigen::Map<const VectorX, 0, Eigen::InnerStride<>> load_solution(const Front& front) {
+  return {front.panel.get() + front.size(), front.pivots, Eigen::InnerStride<>(front.ld())};
+}
+
+/// r over a front's dofs, columns side by side: y = L_pp^-1 r_p on top, r_b - L_bp y below.
+void eliminate(const Front& front, Eigen::MatrixXd& r) {
+  const int pivots = front.pivots;
+  const int boundary = front.boundary();
+  const int columns = static_cast<int>(r.cols());
+  const int ld = front.ld();
+  const int ldr = front.size();
+  const double one = 1.0;
+  const double minus = -1.0;
+  if (pivots == 0 || columns == 0) return;
+  dtrsm_("L", "L", "N", "N", &pivots, &columns, &one, front.panel.get(), &ld, r.data(), &ldr);
+  if (boundary == 0) return;
+  dgemm_("N", "N", &boundary, &columns, &pivots, &minus, front.panel.get() + pivots, &ld, r.data(), &ldr, &one,
+         r.data() + pivots, &ldr);
+}
+
+}  // namespace
+
+FrontTree::Forward FrontTree::forward(std::span<const std::int32_t> dof, const Eigen::MatrixXd& rows) const {
+  const Core& core = *core_;
+  RHEXIS_CHECK(core.outcome == FrontOutcome::ok, "not factored");
+  RHEXIS_CHECK(static_cast<std::size_t>(rows.rows()) == dof.size(), "{} dofs, {} rows", dof.size(), rows.rows());
+  Forward out;
+  const auto add_kept = [&](std::int32_t d, const auto& values) {
+    const auto place = std::lower_bound(core.kept_dofs.begin(), core.kept_dofs.end(), d);
+    RHEXIS_CHECK(place != core.kept_dofs.end() && *place == d, "dof {} is not in the assembly", d);
+    out.kept.row(place - core.kept_dofs.begin()) += values;
+  };
+  out.kept = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(core.kept_dofs.size()), rows.cols());
+  out.gram = Eigen::MatrixXd::Zero(rows.cols(), rows.cols());
+  out.with_load = VectorX::Zero(rows.cols());
+
+  std::map<std::int32_t, Eigen::MatrixXd> reached;  // by component
+  const auto reach = [&](std::int32_t c) -> Eigen::MatrixXd& {
+    Eigen::MatrixXd& r = reached[c];
+    if (r.size() == 0) r = Eigen::MatrixXd::Zero(core.front(c)->size(), rows.cols());
+    return r;
+  };
+  for (std::size_t i = 0; i < dof.size(); ++i) {
+    const std::int32_t node = dof[i] / 3;
+    RHEXIS_CHECK(dof[i] >= 0 && node < core.layout.node_count(), "dof {}", dof[i]);
+    const auto row = rows.row(static_cast<Eigen::Index>(i));
+    if (std::binary_search(core.kept.begin(), core.kept.end(), node)) {
+      add_kept(dof[i], row);
+      continue;
+    }
+    const std::int32_t c = core.find_front(node);
+    const std::int32_t place = c >= 0 ? core.front(c)->find_pivot(core.layout.key(node), dof[i]) : -1;
+    RHEXIS_CHECK(place >= 0, "dof {} is not in the assembly", dof[i]);
+    reach(c).row(place) += row;
+  }
+  if (reached.empty()) return out;
+  std::vector<std::int32_t> path;
+  for (const auto& [c, r] : reached) {
+    for (std::int32_t k = c; k >= 0; k = core.next(k)) path.push_back(k);
+  }
+  // Components that do not hold the last one hand on upwards, and come first; those that do hand on downwards.
+  const ComponentTree& tree = core.layout.tree();
+  const auto rank = [&](std::int32_t c) { return tree.holds(c, core.direction.last) ? 2 * tree.size() - c : c; };
+  std::sort(path.begin(), path.end(), [&](std::int32_t a, std::int32_t b) { return rank(a) < rank(b); });
+  path.erase(std::unique(path.begin(), path.end()), path.end());
+  for (const std::int32_t c : path) {
+    const Front& front = *core.front(c);
+    Eigen::MatrixXd& r = reach(c);
+    eliminate(front, r);
+    out.front.push_back(c);
+    out.y.emplace_back(r.topRows(front.pivots));
+    out.gram.noalias() += out.y.back().transpose() * out.y.back();
+    out.with_load.noalias() += out.y.back().transpose() * load_solution(front);
+    const std::int32_t to = core.next(c);
+    if (to < 0) {
+      for (std::int32_t i = front.pivots; i < front.size(); ++i) add_kept(front.dofs[at(i)], r.row(i));
+      continue;
+    }
+    Eigen::MatrixXd& s = reach(to);
+    for (const Incoming& from : core.front(to)->incoming) {
+      if (from.component != c) continue;
+      for (const Run& run : from.runs) {
+        s.middleRows(run.to, run.length) += r.middleRows(front.pivots + run.from, run.length);
+      }
+    }
+  }
+  return out;
+}
+
+void FrontTree::backward(const VectorX& x_kept, const Forward* forward, const VectorX& amount, double load_amount,
+                         VectorX& x) const {
+  const Core& core = *core_;
+  RHEXIS_CHECK(core.outcome == FrontOutcome::ok, "not factored");
+  RHEXIS_CHECK(static_cast<std::size_t>(x_kept.size()) == core.kept_dofs.size(), "{} values for {} kept dofs",
+               x_kept.size(), core.kept_dofs.size());
+  x.setZero(3 * Eigen::Index{core.layout.node_count()});
+  x(core.kept_dofs) = x_kept;
+  std::vector<const Eigen::MatrixXd*> y(core.fronts.size(), nullptr);
+  if (forward != nullptr) {
+    for (std::size_t i = 0; i < forward->front.size(); ++i) y[at(forward->front[i])] = &forward->y[i];
+  }
+  // Levels from the last front outwards: those of one level write what is their own.
+  std::vector<std::int32_t> level(core.fronts.size(), 0);
+  std::vector<std::vector<std::int32_t>> levels;
+  for (auto c = core.direction.order.rbegin(); c != core.direction.order.rend(); ++c) {
+    const std::int32_t to = core.next(*c);
+    if (to >= 0) level[at(*c)] = level[at(to)] + 1;
+    if (at(level[at(*c)]) == levels.size()) levels.emplace_back();
+    levels[at(level[at(*c)])].push_back(*c);
+  }
+  constexpr std::size_t kGrain = 16;
+  for (const std::vector<std::int32_t>& together : levels) {
+    parallel_ranges(together.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      VectorX work;
+      for (std::size_t i = begin; i < end; ++i) {
+        const Front& front = *core.front(together[i]);
+        const int pivots = front.pivots;
+        const int boundary = front.boundary();
+        if (pivots == 0) continue;
+        if (work.size() < front.size()) work.resize(front.size());
+        for (std::int32_t k = pivots; k < front.size(); ++k) work[k] = x[front.dofs[at(k)]];
+        work.head(pivots) = load_amount * load_solution(front);
+        if (const Eigen::MatrixXd* const own = y[at(together[i])]) work.head(pivots).noalias() += *own * amount;
+        const int ld = front.ld();
+        const int step = 1;
+        const double one = 1.0;
+        const double minus = -1.0;
+        if (boundary > 0) {
+          dgemv_("T", &boundary, &pivots, &minus, front.panel.get() + pivots, &ld, work.data() + pivots, &step, &one,
+                 work.data(), &step);
+        }
+        dtrsv_("L", "T", "N", &pivots, front.panel.get(), &ld, work.data(), &step);
+        for (std::int32_t k = 0; k < pivots; ++k) x[front.dofs[at(k)]] = work[k];
+      }
+    });
+  }
+}
+
+}  // namespace rhexis::linalg
