@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fracture/crack.h"
+#include "fracture/front_surroundings.h"
 #include "mesh/mesh_edit.h"
 #include "mesh/torn_mesh.h"
 
@@ -40,6 +41,9 @@ struct Incision {
 /// surface, tets with a crossed edge are removed; no node is added. split: nodes near the surface are snapped to it,
 /// tets are sorted by side, and the nodes between the sides are doubled; no volume is lost but what snapping moves.
 /// In both a move that would invert or flatten a remaining tet is shortened, made by the other end, or left.
-[[nodiscard]] Incision incise(const mesh::TornMesh& body, const CutSurface& surface, const IncisionSettings& settings);
+/// `surroundings` have followed all edits of the body: what an incision costs grows with the surface, not with the
+/// body.
+[[nodiscard]] Incision incise(const mesh::TornMesh& body, const Surroundings& surroundings, const CutSurface& surface,
+                              const IncisionSettings& settings);
 
 }  // namespace rhexis::fracture

@@ -8,30 +8,6 @@
 namespace rhexis::scene {
 namespace {
 
-using Vec6 = Eigen::Matrix<double, 6, 1>;
-using Mat6 = Eigen::Matrix<double, 6, 6>;
-
-/// A rigid motion is (t, w): the displacement t + w x (X - centre) / size. Its component along an axis e is
-/// t . e + w . ((X - centre) / size x e), so a held component is one row, and the free motions are the null space of
-/// all.
-Mat6 gram_matrix(const std::vector<HeldComponent>& held, const Vec3& centre, double size) {
-  Mat6 gram = Mat6::Zero();
-  for (const HeldComponent& component : held) {
-    const Vec3 axis = Vec3::Unit(component.axis);
-    Vec6 row;
-    row << axis, ((component.point - centre) / size).cross(axis);
-    gram += row * row.transpose();
-  }
-  return gram;
-}
-
-Eigen::Matrix<double, 6, Eigen::Dynamic> null_space(const Mat6& gram, std::size_t rows) {
-  const Eigen::SelfAdjointEigenSolver<Mat6> eigen(gram / static_cast<double>(std::max<std::size_t>(rows, 1)));
-  Eigen::Index count = 0;  // eigenvalues ascend; they are mean squares
-  while (count < 6 && eigen.eigenvalues()[count] <= kFreeMotion * kFreeMotion) ++count;
-  return eigen.eigenvectors().leftCols(count);
-}
-
 std::string text_of_direction(const Vec3& d) {
   for (int axis = 0; axis < 3; ++axis)
     if (std::abs(d[axis]) > 1.0 - 1e-6) return std::string(1, "xyz"[axis]);
@@ -44,7 +20,7 @@ std::string text_of_point(const Vec3& x, double size) {
 }
 
 /// An orthonormal basis of the span of the rotations, along the coordinate axes where the span holds them.
-std::vector<Vec3> rotation_directions(const Eigen::Matrix<double, 6, Eigen::Dynamic>& free) {
+std::vector<Vec3> rotation_directions(const model::RigidMotions& free) {
   Eigen::JacobiSVD<Eigen::MatrixXd> svd(free.bottomRows<3>(), Eigen::ComputeThinU);
   svd.setThreshold(1e-4);  // pure translations have a rotation of rounding size, the others one of order 1
   Mat3 projector = svd.matrixU().leftCols(svd.rank()) * svd.matrixU().leftCols(svd.rank()).transpose();
@@ -65,14 +41,15 @@ std::vector<Vec3> rotation_directions(const Eigen::Matrix<double, 6, Eigen::Dyna
 
 }  // namespace
 
-std::vector<std::string> free_rigid_motions(const std::vector<HeldComponent>& held, const Vec3& centre, double size) {
-  const auto free = null_space(gram_matrix(held, centre, size), held.size());
+std::vector<std::string> free_rigid_motions(const std::vector<model::HeldComponent>& held, const Vec3& centre,
+                                            double size) {
+  const model::RigidMotions free = model::free_motions(held, centre, size);
   std::vector<std::string> names;
   if (free.cols() == 0) return names;
 
   // Supports hold components, so a translation is free exactly along the axes that none of them holds.
   std::array<bool, 3> translates{true, true, true};
-  for (const HeldComponent& component : held) translates[static_cast<std::size_t>(component.axis)] = false;
+  for (const model::HeldComponent& component : held) translates[static_cast<std::size_t>(component.axis)] = false;
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (translates[axis]) names.push_back(fmt::format("translation along {}", "xyz"[axis]));
 

@@ -46,7 +46,7 @@ Expected<void> prescribe(const SupportSettings& support, const Body& body, const
   return {};
 }
 
-Expected<void> check_held(const Scene& scene, const Body& body, const std::vector<HeldComponent>& held) {
+Expected<void> check_held(const Scene& scene, const Body& body, const std::vector<model::HeldComponent>& held) {
   const Vec3 centre = 0.5 * (body.box.from + body.box.to);
   const std::vector<std::string> motions = free_rigid_motions(held, centre, body.box.size().norm());
   if (motions.empty()) return {};
@@ -66,7 +66,7 @@ Expected<std::vector<model::PrescribedDof>> make_supports(const Scene& scene, co
     if (Expected<void> done = prescribe(support, body, space, dofs); !done) return fail(std::move(done.error()));
 
   std::vector<model::PrescribedDof> supports;
-  std::vector<HeldComponent> held;
+  std::vector<model::HeldComponent> held;
   for (std::size_t dof = 0; dof < dofs.size(); ++dof) {
     const std::size_t node = dof / 3;
     const bool unused = node < body.used.size() && !body.used[node];

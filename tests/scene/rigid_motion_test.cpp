@@ -5,6 +5,7 @@
 namespace rhexis::scene::test {
 namespace {
 
+using model::HeldComponent;
 using testing::ElementsAre;
 using testing::IsEmpty;
 

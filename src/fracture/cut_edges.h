@@ -1,0 +1,30 @@
+#pragma once
+
+/// The edges that a swept surface crosses, and the tets that have them.
+
+#include <span>
+#include <vector>
+
+#include "fracture/cut_geometry.h"
+#include "mesh/torn_mesh.h"
+
+namespace rhexis::fracture {
+
+struct CrossedEdge {
+  NodeId above;
+  NodeId below;
+  std::size_t triangle = 0;  ///< of the geometry: the one that is crossed
+  Vec3 at = Vec3::Zero();    ///< where, m
+};
+
+/// Of tets in the solve; ascending by (smaller, larger) node. `near`: tets that hold all candidates, ascending.
+[[nodiscard]] std::vector<CrossedEdge> crossed_edges(const mesh::TornMesh& body, const CutGeometry& surface,
+                                                     std::span<const TetId> near);
+
+/// Tets in the solve that have one of the edges; ascending, no duplicates.
+[[nodiscard]] std::vector<TetId> tets_with(const mesh::TornMesh& body, std::span<const CrossedEdge> edges);
+
+/// Nodes of the edges; ascending, no duplicates.
+[[nodiscard]] std::vector<NodeId> ends_of(std::span<const CrossedEdge> edges);
+
+}  // namespace rhexis::fracture

@@ -1,0 +1,100 @@
+#include "fracture/cut_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+namespace rhexis::fracture {
+namespace {
+
+/// Of the closed segment from p to q.
+Vec3 nearest_on_segment(const Vec3& p, const Vec3& q, const Vec3& at) {
+  const Vec3 way = q - p;
+  return p + std::clamp(way.dot(at - p) / way.squaredNorm(), 0.0, 1.0) * way;
+}
+
+bool overlap(const mesh::BoundingBox& box, const Vec3& from, const Vec3& to) {
+  return (box.from.array() <= to.array()).all() && (from.array() <= box.to.array()).all();
+}
+
+}  // namespace
+
+Vec3 CutTriangle::nearest(const Vec3& at) const {
+  const Vec3 foot = projected(at);
+  bool inside = true;
+  Vec3 best = corner[0];
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3& p = corner[k];
+    const Vec3& q = corner[(k + 1) % 3];
+    if ((q - p).cross(foot - p).dot(normal) >= 0.0) continue;  // on the inner side of this side's line
+    inside = false;
+    const Vec3 candidate = nearest_on_segment(p, q, at);
+    const double distance = (candidate - at).squaredNorm();
+    if (distance < least) {
+      least = distance;
+      best = candidate;
+    }
+  }
+  return inside ? foot : best;
+}
+
+CutGeometry::CutGeometry(std::span<const CutSurface::Triangle> triangles, double on_plane) : on_plane_(on_plane) {
+  for (const CutSurface::Triangle& t : triangles) {
+    const Vec3 normal = (t.b - t.a).cross(t.c - t.a);
+    const double twice_area = normal.norm();
+    if (!(twice_area > on_plane * on_plane) || !std::isfinite(twice_area)) continue;
+    triangles_.push_back(
+        {{t.a, t.b, t.c}, normal / twice_area, {t.a.cwiseMin(t.b).cwiseMin(t.c), t.a.cwiseMax(t.b).cwiseMax(t.c)}});
+  }
+}
+
+std::optional<CutGeometry::Crossing> CutGeometry::crossing(const Vec3& a, const Vec3& b) const {
+  const Vec3 margin = Vec3::Constant(on_plane_);
+  const Vec3 from = a.cwiseMin(b) - margin;
+  const Vec3 to = a.cwiseMax(b) + margin;
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const CutTriangle& triangle = triangles_[t];
+    if (!overlap(triangle.box, from, to)) continue;
+    const double height_a = triangle.height(a);
+    const double height_b = triangle.height(b);
+    const bool a_above = height_a >= -on_plane_;
+    if (a_above == (height_b >= -on_plane_)) continue;
+    // (4.12). An edge almost in the plane meets it at a place that rounding moves along the edge: so much wider is the
+    // triangle, lest the edge slips through between two of them.
+    const double drop = std::abs(height_a - height_b);
+    const Vec3 at = a + std::clamp(height_a / (height_a - height_b), 0.0, 1.0) * (b - a);
+    const double rounding = 8.0 * std::numeric_limits<double>::epsilon() *
+                            std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), on_plane_});
+    const double slack = 2.0 * on_plane_ + (b - a).norm() * std::min(1.0, rounding / drop);
+    if ((triangle.nearest(at) - at).squaredNorm() <= slack * slack) return Crossing{t, at, a_above};
+  }
+  return std::nullopt;
+}
+
+const CutTriangle& CutGeometry::facing(const Vec3& at) const {
+  const CutTriangle* best = &triangles_.front();
+  double least = std::numeric_limits<double>::infinity();
+  double steepest = 0.0;
+  for (const CutTriangle& triangle : triangles_) {
+    const double distance = (triangle.nearest(at) - at).norm();
+    if (distance > least + on_plane_) continue;
+    const double height = std::abs(triangle.height(at));
+    if (distance < least - on_plane_ || height > steepest) {
+      best = &triangle;
+      steepest = height;
+    }
+    least = std::min(least, distance);
+  }
+  return *best;
+}
+
+bool CutGeometry::is_on(const Vec3& at) const {
+  return std::any_of(triangles_.begin(), triangles_.end(), [&](const CutTriangle& triangle) {
+    return (triangle.nearest(at) - at).squaredNorm() <= on_plane_ * on_plane_;
+  });
+}
+
+}  // namespace rhexis::fracture
