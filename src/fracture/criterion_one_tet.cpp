@@ -1,5 +1,6 @@
 #include "fracture/criterion_one_tet.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "fracture/criterion_view.h"
@@ -82,8 +83,8 @@ class OneTetCriterion final : public Criterion {
     out.direction = section.point.direction;
     PrincipalStress decisive;
     for (const TetStress& tet : tets) {
-      const auto seen = see(section, tet, settings_);
-      if (!seen) continue;
+      const auto seen = see(section, tet);
+      if (!seen || !counts(*seen, settings_)) continue;
       const PrincipalStress principal = principal_stress(tet.stress);
       const double value = Rule::value(principal);
       if (value >= settings_.advance_threshold) out.length = std::max(out.length, seen->distance);

@@ -1,6 +1,6 @@
 #include "fracture/maximum_hoop.h"
 
-#include <Eigen/QR>
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -13,44 +13,45 @@ namespace {
 
 constexpr int kTerms = 5;
 using Terms = Eigen::Matrix<double, kTerms, 1>;
-/// A fit takes this many tets for each of its terms; with fewer the mean stress decides.
-constexpr int kTetsPerTerm = 3;
+using StressTerms = Eigen::Matrix<double, 3, kTerms>;
+/// Fewer tets than this do not carry a fit: their mean stress decides.
+constexpr int kLeastTets = 15;
+/// A pivot of the normal equations below this part of the largest: the tets do not tell the terms apart.
+constexpr double kLeastPivot = 1e-8;
 
-/// `ratio` = (r0 / r)^1/2.
-Terms basis(double angle, double ratio) {
-  const double c = std::cos(0.5 * angle);
-  Terms out;
-  out << ratio * c * c * c, ratio * std::sin(angle) * c, 1.0, std::cos(2.0 * angle), std::sin(2.0 * angle);
+/// Stress of the terms a_1, b_1, T, a_3, b_3 of Williams' series at an angle; rows: along the present direction, along
+/// the crack's normal, shear. `root` = r^1/2 (r in any unit, the same throughout).
+StressTerms williams(double angle, double root) {
+  const double s1 = std::sin(0.5 * angle);
+  const double c1 = std::cos(0.5 * angle);
+  const double s3 = std::sin(1.5 * angle);
+  const double c3 = std::cos(1.5 * angle);
+  const double s5 = std::sin(2.5 * angle);
+  const double c5 = std::cos(2.5 * angle);
+  StressTerms out;
+  out.col(0) = Vec3(3.0 * c1 + c5, 5.0 * c1 - c5, s5 - s1) * (0.25 / root);
+  out.col(1) = Vec3(-7.0 * s1 - s5, s5 - s1, 3.0 * c1 + c5) * (0.25 / root);
+  out.col(2) = Vec3::UnitX();
+  out.col(3) = Vec3(5.0 * c1 - c3, 3.0 * c1 + c3, -s1 - s3) * (0.5 * root);
+  out.col(4) = Vec3(-9.0 * s1 - s3, s1 + s3, c3 - 5.0 * c1) * (0.5 * root);
   return out;
 }
 
-/// Stress in the plane of the section: along the present direction, along the crack's normal, and the shear.
-struct PlaneStress {
-  double ahead = 0.0;
-  double above = 0.0;
-  double shear = 0.0;
+/// Stress in the plane of the section: along the present direction, along the crack's normal, shear.
+Vec3 in_section(const FrontPoint& point, const Mat3& stress) {
+  const Vec3 normal = point.normal();
+  return {point.direction.dot(stress * point.direction), normal.dot(stress * normal),
+          normal.dot(stress * point.direction)};
+}
 
-  PlaneStress() = default;
-  PlaneStress(const FrontPoint& point, const Mat3& stress) {
-    const Vec3 normal = point.normal();
-    ahead = point.direction.dot(stress * point.direction);
-    above = normal.dot(stress * normal);
-    shear = normal.dot(stress * point.direction);
-  }
-  [[nodiscard]] double hoop(double angle) const {
-    const double s = std::sin(angle);
-    const double c = std::cos(angle);
-    return s * s * ahead + c * c * above - 2.0 * s * c * shear;
-  }
-  void add(const PlaneStress& other, double weight) {
-    ahead += weight * other.ahead;
-    above += weight * other.above;
-    shear += weight * other.shear;
-  }
-};
+double hoop_of(const Vec3& stress, double angle) {
+  const double s = std::sin(angle);
+  const double c = std::cos(angle);
+  return s * s * stress[0] + c * c * stress[1] - 2.0 * s * c * stress[2];
+}
 
-/// The angle in [-90, 90] degrees where `hoop` is largest: by degrees, then by golden section in the best two. Of equal
-/// ones the nearest to straight ahead.
+/// The angle in [-90, 90] degrees where `hoop` is largest: by degrees, then by golden section between its neighbours.
+/// Of equal ones the nearest to straight ahead.
 template <class Hoop>
 double angle_of_maximum(const Hoop& hoop) {
   constexpr double kDegree = std::numbers::pi / 180.0;
@@ -59,25 +60,45 @@ double angle_of_maximum(const Hoop& hoop) {
   for (int degree = 1; degree <= 90; ++degree) {
     for (const double angle : {degree * kDegree, -degree * kDegree}) {
       const double value = hoop(angle);
-      if (value > largest) {
-        largest = value;
-        best = angle;
-      }
+      if (value <= largest) continue;
+      largest = value;
+      best = angle;
     }
   }
   constexpr double kGolden = 0.6180339887498949;
   double from = std::max(best - kDegree, -90.0 * kDegree);
   double to = std::min(best + kDegree, 90.0 * kDegree);
-  for (int step = 0; step < 40; ++step) {  // 2 degrees times 0.618^40: 2e-10 radians, as flat as a maximum can be told
+  for (int step = 0; step < 35; ++step) {  // 2 degrees times 0.618^35: 2e-9 radians, below what a flat top can tell
     const double left = to - kGolden * (to - from);
     const double right = from + kGolden * (to - from);
-    if (hoop(left) < hoop(right))
+    if (hoop(left) < hoop(right)) {
       from = left;
-    else
+    } else {
       to = right;
+    }
   }
   return 0.5 * (from + to);
 }
+
+/// What the tets of the ring say together.
+struct Ring {
+  int tets = 0;
+  double volume = 0.0;    ///< m^3
+  double distance = 0.0;  ///< volume times distance, in mean edges
+  Vec3 stress = Vec3::Zero();
+  Eigen::Matrix<double, kTerms, kTerms> normal = Eigen::Matrix<double, kTerms, kTerms>::Zero();
+  Terms right = Terms::Zero();
+
+  void add(const Vec3& of_tet, double weight, double angle, double edges) {
+    const StressTerms terms = williams(angle, std::sqrt(edges));
+    ++tets;
+    volume += weight;
+    distance += weight * edges;
+    stress += weight * of_tet;
+    normal += weight * terms.transpose() * terms;
+    right += weight * terms.transpose() * of_tet;
+  }
+};
 
 }  // namespace
 
@@ -85,51 +106,30 @@ Judgement MaximumHoop::judge(const FrontSection& section, std::span<const TetStr
   const FrontPoint& point = section.point;
   Judgement out;
   out.direction = point.direction;
-  const auto in_ring = [&](const SeenTet& seen) {
-    return seen.distance >= kRingInner * settings_.mean_edge && seen.distance <= kRingOuter * settings_.mean_edge;
-  };
-
-  int count = 0;
-  double volume = 0.0;
-  double radius = 0.0;
-  PlaneStress mean;
+  Ring ring;
   for (const TetStress& tet : tets) {
-    const auto seen = see(section, tet, settings_);
+    const auto seen = see(section, tet);
     if (!seen) continue;
-    const PlaneStress stress(point, tet.stress);
-    if (stress.hoop(std::atan2(seen->above, seen->ahead)) >= settings_.advance_threshold)
+    const double angle = std::atan2(seen->above, seen->ahead);
+    const Vec3 stress = in_section(point, tet.stress);
+    if (counts(*seen, settings_) && hoop_of(stress, angle) >= settings_.advance_threshold)
       out.length = std::max(out.length, seen->distance);
-    if (!in_ring(*seen)) continue;
-    ++count;
-    volume += tet.volume;
-    radius += tet.volume * seen->distance;
-    mean.add(stress, tet.volume);
+    const double edges = seen->distance / settings_.mean_edge;
+    if (edges >= kRingInner && edges <= kRingOuter) ring.add(stress, tet.volume, angle, edges);
   }
-  if (count == 0) return out;
-  radius /= volume;
+  if (ring.tets == 0) return out;
 
-  double angle = 0.0;
-  if (count < kTerms * kTetsPerTerm) {
-    const auto hoop = [&](double at) { return mean.hoop(at) / volume; };
-    angle = angle_of_maximum(hoop);
-    out.value = hoop(angle);
-  } else {
-    Eigen::Matrix<double, Eigen::Dynamic, kTerms> rows(count, kTerms);
-    VectorX values(count);
-    int row = 0;
-    for (const TetStress& tet : tets) {
-      const auto seen = see(section, tet, settings_);
-      if (!seen || !in_ring(*seen)) continue;
-      const double at = std::atan2(seen->above, seen->ahead);
-      const double weight = std::sqrt(tet.volume / volume);
-      rows.row(row) = weight * basis(at, std::sqrt(radius / seen->distance)).transpose();
-      values[row++] = weight * PlaneStress(point, tet.stress).hoop(at);
-    }
-    const Terms fit = rows.colPivHouseholderQr().solve(values);
-    const auto hoop = [&](double at) { return fit.dot(basis(at, 1.0)); };
-    angle = angle_of_maximum(hoop);
-    out.value = hoop(angle);
-  }
+  const Eigen::LDLT<Eigen::Matrix<double, kTerms, kTerms>> factor(ring.normal);
+  const auto pivots = factor.vectorD();
+  const bool fits = ring.tets >= kLeastTets && pivots.minCoeff() > kLeastPivot * pivots.maxCoeff();
+  Terms fit = fits ? Terms(factor.solve(ring.right)) : Terms::Zero();
+  // The two terms that grow with the distance have taken what belongs to the plate; the tip's own are left.
+  fit.tail<2>().setZero();
+  const double root = std::sqrt(ring.distance / ring.volume);
+  const Vec3 mean = ring.stress / ring.volume;
+  const auto hoop = [&](double angle) { return hoop_of(fits ? Vec3(williams(angle, root) * fit) : mean, angle); };
+  const double angle = angle_of_maximum(hoop);
+  out.value = hoop(angle);
   out.met = out.value >= settings_.strength;
   out.direction = std::cos(angle) * point.direction + std::sin(angle) * point.normal();
   return out;

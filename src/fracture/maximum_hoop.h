@@ -1,13 +1,12 @@
 #pragma once
 
-/// The maximum hoop stress (Erdogan and Sih 1963) from a mesh that does not resolve the tip: the hoop stress of a ring
-/// of tets around the front is fitted over the angle, and the crack goes where the fit is largest. Single tets scatter
-/// by more than the angle that is sought; the fit uses all of them.
-///
-/// The basis, at distance r and angle theta from the present direction, is the two singular terms of Williams' series
-/// and the three of a uniform stress:
-///   (r0/r)^1/2 cos^3(theta/2),  (r0/r)^1/2 sin(theta) cos(theta/2),  1,  cos 2 theta,  sin 2 theta.
-/// So it is exact in a uniform field and next to an ideal tip, and near a notch in between.
+/// The maximum hoop stress (Erdogan and Sih 1963) from a mesh that does not resolve the tip. Single tets there scatter
+/// by more than the angle that is sought, so the stress of a whole ring of them is fitted, by least squares weighted
+/// with their volumes, with the leading terms of Williams' series for a straight crack:
+///   sigma(r, theta) = r^-1/2 (a_1 f_1 + b_1 g_1) + T + r^1/2 (a_3 f_3 + b_3 g_3)
+/// in all three stresses of the section. The hoop stress of the first three terms at the ring's mean radius is what is
+/// judged, and the crack goes where it is largest; the last two keep the plate's own stress out of them. The fit takes
+/// the tets behind the front as well, whatever `ahead_only` says, which bounds the search and the advance length.
 
 #include "fracture/criterion.h"
 
@@ -20,8 +19,7 @@ inline constexpr double kRingOuter = 3.5;
 class MaximumHoop final : public Criterion {
  public:
   explicit MaximumHoop(const CriterionSettings& settings) : settings_(settings) {}
-  /// The value is that of the fit at the ring's mean radius. A ring of too few tets for the fit is judged by its mean
-  /// stress.
+  /// A ring of too few tets for the fit is judged by the hoop stress of its mean stress.
   [[nodiscard]] Judgement judge(const FrontSection& section, std::span<const TetStress> tets) const override;
 
  private:
