@@ -12,6 +12,7 @@
 
 #include "base/atomic_file.h"
 #include "base/check.h"
+#include "mesh/io/xml_text.h"
 
 namespace rhexis::result {
 namespace {
@@ -37,21 +38,6 @@ constexpr double kSymbolRadius = 4.5;   // px
 constexpr double kColumn = 0.5;         // px, of a thinned line
 constexpr double kXTickSpacing = 90.0;  // px, wanted
 constexpr double kYTickSpacing = 48.0;  // px, wanted
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      // XML has no way to say a control character.
-      default: out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
-    }
-  }
-  return out;
-}
 
 /// About how wide a text comes out, px; fonts differ, so what follows it keeps a distance.
 double text_width(std::string_view text, double size) {
@@ -156,7 +142,7 @@ class Drawing {
     fmt::format_to(std::back_inserter(out_), format, std::forward<Args>(args)...);
   }
   void text(double x, double y, std::string_view classes, std::string_view what, std::string_view more = {}) {
-    add("<text x=\"{}\" y=\"{}\" class=\"{}\"{}>{}</text>\n", px(x), px(y), classes, more, escaped(what));
+    add("<text x=\"{}\" y=\"{}\" class=\"{}\"{}>{}</text>\n", px(x), px(y), classes, more, mesh::io::xml_escaped(what));
   }
 
   void open();
@@ -185,7 +171,7 @@ class Drawing {
 void Drawing::open() {
   add("<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"rhexis-chart\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
       "height=\"{1}\" role=\"img\">\n<title>{2}</title>\n<style>\n",
-      chart_.width, chart_.height, escaped(chart_.title));
+      chart_.width, chart_.height, mesh::io::xml_escaped(chart_.title));
   const auto rules = [&](std::size_t scheme, std::string_view ground, std::string_view ink, std::string_view faint,
                          std::string_view grid) {
     add(".rhexis-chart .ground{{fill:{}}} .rhexis-chart text{{fill:{}}} .rhexis-chart .faint{{fill:{}}}\n", ground, ink,

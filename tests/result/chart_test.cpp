@@ -116,7 +116,7 @@ TEST(Chart, TextIsEscaped) {
   chart.series[0].name = "</text><script>alert(1)</script>";
   chart.y.label = "σ₁ / Pa";
   const pugi::xml_document document = parsed(chart);
-  EXPECT_STREQ(document.child("svg").child_value("title"), "a < b & \"c\" > d ");
+  EXPECT_STREQ(document.child("svg").child_value("title"), "a < b & \"c\" > d?");
   EXPECT_EQ(count(document, "//script"), 0U);
   EXPECT_EQ(count(document, "//text[.='σ₁ / Pa']"), 1U);
 }
