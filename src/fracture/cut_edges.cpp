@@ -15,7 +15,7 @@ void sort_unique(std::vector<T>& items) {
 
 }  // namespace
 
-std::vector<CrossedEdge> crossed_edges(const mesh::TornMesh& body, const CutGeometry& surface,
+std::vector<CrossedEdge> crossed_edges(const mesh::TornMesh& body, const NodeMoves& moves, const CutGeometry& surface,
                                        std::span<const TetId> near) {
   std::vector<std::pair<NodeId, NodeId>> edges;
   for (const TetId tet : near) {
@@ -28,7 +28,7 @@ std::vector<CrossedEdge> crossed_edges(const mesh::TornMesh& body, const CutGeom
 
   std::vector<CrossedEdge> crossed;
   for (const auto& [a, b] : edges) {
-    const auto crossing = surface.crossing(body.mesh().node(a), body.mesh().node(b));
+    const auto crossing = surface.crossing(moves.position(a), moves.position(b));
     if (!crossing) continue;
     crossed.push_back({crossing->a_above ? a : b, crossing->a_above ? b : a, crossing->triangle, crossing->at});
   }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fracture/cut_geometry.h"
-#include "mesh/torn_mesh.h"
+#include "fracture/node_moves.h"
 
 namespace rhexis::fracture {
 
@@ -17,9 +17,9 @@ struct CrossedEdge {
   Vec3 at = Vec3::Zero();    ///< where, m
 };
 
-/// Of tets in the solve; ascending by (smaller, larger) node. `near`: tets that hold all candidates, ascending.
-[[nodiscard]] std::vector<CrossedEdge> crossed_edges(const mesh::TornMesh& body, const CutGeometry& surface,
-                                                     std::span<const TetId> near);
+/// Of the tets in `near` that are in the solve, with the moves so far; ascending by (smaller, larger) node.
+[[nodiscard]] std::vector<CrossedEdge> crossed_edges(const mesh::TornMesh& body, const NodeMoves& moves,
+                                                     const CutGeometry& surface, std::span<const TetId> near);
 
 /// Tets in the solve that have one of the edges; ascending, no duplicates.
 [[nodiscard]] std::vector<TetId> tets_with(const mesh::TornMesh& body, std::span<const CrossedEdge> edges);

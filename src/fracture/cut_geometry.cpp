@@ -42,13 +42,41 @@ Vec3 CutTriangle::nearest(const Vec3& at) const {
 }
 
 CutGeometry::CutGeometry(std::span<const CutSurface::Triangle> triangles, double on_plane) : on_plane_(on_plane) {
-  for (const CutSurface::Triangle& t : triangles) {
-    const Vec3 normal = (t.b - t.a).cross(t.c - t.a);
-    const double twice_area = normal.norm();
-    if (!(twice_area > on_plane * on_plane) || !std::isfinite(twice_area)) continue;
-    triangles_.push_back(
-        {{t.a, t.b, t.c}, normal / twice_area, {t.a.cwiseMin(t.b).cwiseMin(t.c), t.a.cwiseMax(t.b).cwiseMax(t.c)}});
-  }
+  for (const CutSurface::Triangle& t : triangles) add({t.a, t.b, t.c});
+}
+
+void CutGeometry::add(const std::array<Vec3, 3>& corner) {
+  const auto& [a, b, c] = corner;
+  const Vec3 normal = (b - a).cross(c - a);
+  const double twice_area = normal.norm();
+  if (!(twice_area > on_plane_ * on_plane_) || !std::isfinite(twice_area)) return;
+  triangles_.push_back({corner, normal / twice_area, {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)}});
+}
+
+CutGeometry CutGeometry::behind(std::span<const mesh::MeshEdit> history, double reach) const {
+  CutGeometry found({}, on_plane_);
+  if (triangles_.empty()) return found;
+  mesh::BoundingBox box = triangles_.front().box;
+  for (const CutTriangle& triangle : triangles_)
+    box = {box.from.cwiseMin(triangle.box.from), box.to.cwiseMax(triangle.box.to)};
+  const Vec3 wide = Vec3::Constant(reach);
+  for (const mesh::MeshEdit& edit : history)
+    for (const auto& [a, b, c] : edit.swept) {
+      if (!overlap(box, a.cwiseMin(b).cwiseMin(c) - wide, a.cwiseMax(b).cwiseMax(c) + wide)) continue;
+      const bool turned = (b - a).cross(c - a).dot(facing((a + b + c) / 3.0).normal) < 0.0;
+      found.add(turned ? std::array{a, c, b} : std::array{a, b, c});
+    }
+  return found;
+}
+
+void CutGeometry::join(const CutGeometry& other) {
+  triangles_.insert(triangles_.end(), other.triangles_.begin(), other.triangles_.end());
+}
+
+std::vector<std::array<Vec3, 3>> CutGeometry::corners() const {
+  std::vector<std::array<Vec3, 3>> all;
+  for (const CutTriangle& triangle : triangles_) all.push_back(triangle.corner);
+  return all;
 }
 
 std::optional<CutGeometry::Crossing> CutGeometry::crossing(const Vec3& a, const Vec3& b) const {

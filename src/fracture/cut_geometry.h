@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fracture/crack.h"
-#include "mesh/tet_mesh.h"
+#include "mesh/mesh_edit.h"
 
 namespace rhexis::fracture {
 
@@ -30,8 +30,15 @@ class CutGeometry {
   /// (or whose area is not a number) are left out.
   CutGeometry(std::span<const CutSurface::Triangle> triangles, double on_plane);
 
+  /// What earlier edits swept within `reach` (m) of this surface, turned so that above is on the same side.
+  [[nodiscard]] CutGeometry behind(std::span<const mesh::MeshEdit> history, double reach) const;
+  /// Adds the triangles of the other, behind its own.
+  void join(const CutGeometry& other);
+
   [[nodiscard]] const std::vector<CutTriangle>& triangles() const { return triangles_; }
   [[nodiscard]] double on_plane() const { return on_plane_; }
+  /// What MeshEdit::swept takes.
+  [[nodiscard]] std::vector<std::array<Vec3, 3>> corners() const;
 
   /// Where the edge from `a` to `b` passes through the surface, one end above and one below: the triangle and the
   /// point. Inclusive: what passes between two triangles that share a side meets both. The first triangle is taken.
@@ -51,6 +58,8 @@ class CutGeometry {
   [[nodiscard]] bool is_on(const Vec3& at) const;
 
  private:
+  void add(const std::array<Vec3, 3>& corner);
+
   std::vector<CutTriangle> triangles_;
   double on_plane_ = 0.0;
 };

@@ -51,7 +51,7 @@ std::vector<Projection> projections(const CutGeometry& surface, std::span<const 
 
 Incision incise_keeping_nodes(const mesh::TornMesh& body, const CutGeometry& surface, const IncisionSettings& settings,
                               std::span<const TetId> near) {
-  const std::vector<CrossedEdge> edges = crossed_edges(body, surface, near);
+  const std::vector<CrossedEdge> edges = crossed_edges(body, NodeMoves(body, {}, settings), surface, near);
 
   Incision incision;
   incision.edges_cut = static_cast<int>(edges.size());
@@ -74,6 +74,7 @@ Incision incise_keeping_nodes(const mesh::TornMesh& body, const CutGeometry& sur
   }
   incision.nodes_off_plane += static_cast<int>(waiting.size());
   incision.edit.moved = moves.moved();
+  if (!edges.empty()) incision.edit.swept = surface.corners();
   incision.volume_lost = moves.volume_lost();
   return incision;
 }

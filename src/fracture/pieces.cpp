@@ -1,11 +1,86 @@
 #include "fracture/pieces.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "fracture/face_neighbours.h"
 #include "fracture/piece_support.h"
+#include "fracture/piece_walk.h"
 
 namespace rhexis::fracture {
+namespace {
+
+/// Alive tets that had a neighbour before the edit which they have no more, or may have; ascending.
+std::vector<TetId> tets_beside(const mesh::TornMesh& body, const mesh::MeshEdit& edit) {
+  std::vector<TetId> tets;
+  const auto add_neighbours = [&](TetId tet, const mesh::Tet& nodes) {
+    for (const auto& [i, j, k] : mesh::kTetFaces) {
+      const auto at = [&](int n) { return nodes[static_cast<std::size_t>(n)]; };
+      const TetId other = other_tet_with(body, tet, {at(i), at(j), at(k)});
+      if (other.valid()) tets.push_back(other);
+    }
+  };
+  for (const TetId tet : edit.removed) add_neighbours(tet, body.mesh().tet(tet));
+  for (const mesh::RewiredTet& change : edit.rewired) {
+    tets.push_back(change.tet);
+    add_neighbours(change.tet, change.before);  // the neighbour keeps the old nodes, or is rewired itself
+  }
+  std::sort(tets.begin(), tets.end());
+  tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
+  return tets;
+}
+
+/// False when the edit is sure to have changed nothing that support depends on, pieces being what they were: the nodes
+/// that are held, or where pieces touch.
+bool touches_support(const mesh::TornMesh& body, const Pieces& before, const mesh::MeshEdit& edit,
+                     const std::vector<std::uint8_t>& held) {
+  const auto matters = [&](NodeId node, std::int32_t piece) {
+    const std::size_t dof = 3 * node.index();
+    if ((held[dof] | held[dof + 1] | held[dof + 2]) != 0) return true;
+    const auto tets = body.tets_around(node);
+    return std::any_of(tets.begin(), tets.end(), [&](TetId tet) { return before.of_tet[tet.index()] != piece; });
+  };
+  const auto any_matters = [&](TetId tet, const mesh::Tet& nodes) {
+    const std::int32_t piece = before.of_tet[tet.index()];
+    return std::any_of(nodes.begin(), nodes.end(), [&](NodeId node) { return matters(node, piece); });
+  };
+  for (const TetId tet : edit.removed)
+    if (any_matters(tet, body.mesh().tet(tet))) return true;
+  for (const mesh::RewiredTet& change : edit.rewired)
+    if (any_matters(change.tet, change.before) || any_matters(change.tet, change.after)) return true;
+  for (const mesh::MovedNode& move : edit.moved)
+    for (const TetId tet : body.tets_around(move.node))
+      if (matters(move.node, before.of_tet[tet.index()])) return true;
+  return false;
+}
+
+/// The lowest tet of a piece, searched upwards from where it was; not valid when the piece has gone.
+TetId first_tet(const std::vector<std::int32_t>& of_tet, std::int32_t piece, TetId from) {
+  const auto at = std::find(of_tet.begin() + from.value(), of_tet.end(), piece);
+  return at == of_tet.end() ? TetId() : TetId(static_cast<std::size_t>(at - of_tet.begin()));
+}
+
+/// Numbers the pieces by their lowest tets again; those without one drop out. Whether any number changed.
+bool renumber(Pieces& pieces) {
+  std::vector<std::int32_t> order;
+  for (std::size_t piece = 0; piece < pieces.first.size(); ++piece)
+    if (pieces.first[piece].valid()) order.push_back(static_cast<std::int32_t>(piece));
+  const auto first = [&](std::int32_t piece) { return pieces.first[static_cast<std::size_t>(piece)]; };
+  if (order.size() == pieces.first.size() && std::is_sorted(pieces.first.begin(), pieces.first.end())) return false;
+  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) { return first(a) < first(b); });
+  std::vector<std::int32_t> number(pieces.first.size(), -1);
+  std::vector<TetId> firsts;
+  for (const std::int32_t piece : order) {
+    number[static_cast<std::size_t>(piece)] = static_cast<std::int32_t>(firsts.size());
+    firsts.push_back(first(piece));
+  }
+  pieces.first = std::move(firsts);
+  for (std::int32_t& piece : pieces.of_tet)
+    if (piece >= 0) piece = number[static_cast<std::size_t>(piece)];
+  return true;
+}
+
+}  // namespace
 
 Pieces find_pieces(const mesh::TornMesh& body, const std::vector<std::uint8_t>& held) {
   Pieces pieces;
@@ -30,6 +105,24 @@ Pieces find_pieces(const mesh::TornMesh& body, const std::vector<std::uint8_t>& 
   }
   pieces.supported = find_support(body, pieces, held);
   return pieces;
+}
+
+void update_pieces(Pieces& pieces, const mesh::TornMesh& body, const mesh::MeshEdit& edit,
+                   const std::vector<std::uint8_t>& held) {
+  const std::vector<std::vector<TetId>> parts = parts_cut_off(body, pieces, tets_beside(body, edit));
+  const bool support_changes = !parts.empty() || touches_support(body, pieces, edit, held);
+
+  for (const TetId tet : edit.removed) pieces.of_tet[tet.index()] = -1;
+  for (const std::vector<TetId>& part : parts) {
+    for (const TetId tet : part) pieces.of_tet[tet.index()] = static_cast<std::int32_t>(pieces.first.size());
+    pieces.first.push_back(part.front());
+  }
+  for (std::size_t piece = 0; piece < pieces.first.size(); ++piece) {
+    const auto number = static_cast<std::int32_t>(piece);
+    TetId& first = pieces.first[piece];
+    if (pieces.of_tet[first.index()] != number) first = first_tet(pieces.of_tet, number, first);
+  }
+  if (renumber(pieces) || support_changes) pieces.supported = find_support(body, pieces, held);
 }
 
 std::vector<TetId> unsupported_tets(const mesh::TornMesh& body, const Pieces& pieces) {

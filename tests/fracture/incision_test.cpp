@@ -1,0 +1,176 @@
+// What has to hold of any incision, of any body by any surface: random cracks that run on, advance by advance, until
+// the bodies are in bits, by both methods. Three seeds a body always; with RHEXIS_FULL=1 in the environment hundreds.
+
+#include "fracture/incision.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "mesh/generate.h"
+#include "tests/fracture/cut_support.h"
+#include "tests/support/measured.h"
+
+namespace rhexis::fracture::test {
+namespace {
+
+enum class Shape { plate, bar, cube, tube, rod };
+
+mesh::TetMesh make(Shape shape, int nodes) {
+  switch (shape) {
+    case Shape::plate: return mesh::make_plate({Vec3(0.24, 0.24, 0.01)}, nodes).value();
+    case Shape::bar: return mesh::make_bar({Vec3(0.2, 0.05, 0.05)}, nodes).value();
+    case Shape::cube: return mesh::make_bar({Vec3(0.1, 0.1, 0.1)}, nodes).value();
+    case Shape::tube: return mesh::make_tube({0.005, 0.04, 0.0015, 40.0}, nodes).value();
+    case Shape::rod: return mesh::make_tube({0.005, 0.03, 0.0, 0.0}, nodes).value();
+  }
+  return {};
+}
+
+/// A polyline across a body whose points run on, each its own way, never turning by more than 60 degrees.
+struct RandomFront {
+  std::vector<Vec3> points;
+  std::vector<Vec3> direction;
+
+  RandomFront(Dice& dice, const mesh::BoundingBox& box) {
+    const Vec3 at = dice.inside(box);
+    const Vec3 along = dice.direction();
+    const Vec3 ahead = along.cross(dice.direction()).normalized();
+    const double reach = box.size().norm() * dice.between(0.2, 1.2);
+    const int count = 2 + static_cast<int>(dice.between(0.0, 5.0));
+    for (int k = 0; k < count; ++k) {
+      const double part = 2.0 * k / (count - 1) - 1.0;
+      points.push_back(at + reach * (part * along - dice.between(0.0, 0.1) * ahead));
+      direction.push_back(ahead);
+    }
+  }
+
+  CutSurface advance(Dice& dice, double edge) {
+    const std::vector<Vec3> before = points;
+    const double length = edge * dice.between(0.1, 3.0);
+    const Vec3 turn = dice.between(0.0, 0.8) * dice.direction();
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      direction[k] = (direction[k] + turn + 0.2 * dice.direction()).normalized();
+      points[k] += length * dice.between(0.5, 1.0) * direction[k];
+    }
+    return strip(before, points);
+  }
+};
+
+struct Tally {
+  int advances = 0;
+  int ends = 0;
+  int off_plane = 0;
+  int most_pieces = 0;
+  double volume = 0.0;  ///< the intact volumes, m^3
+  double lost = 0.0;
+};
+
+class Incisions : public testing::TestWithParam<std::tuple<IncisionMethod, Shape>> {
+ protected:
+  /// Tears one body by three cracks; everything is checked after every advance.
+  void tear(std::uint64_t seed, Tally& tally) {
+    const auto [method, shape] = GetParam();
+    Dice dice(seed);
+    CutBody cut(make(shape, 450 + static_cast<int>(dice.between(0, 3)) * 50), method);
+    const mesh::BoundingBox box = mesh::bounding_box(cut.body.mesh());
+    const double ledge = box.from[2] + 0.1 * box.size()[2];
+    const double side = box.from[0] + 0.06 * box.size()[0];
+    cut.hold([&](const Vec3& x) { return shape == Shape::tube || shape == Shape::rod ? x[2] < ledge : x[0] < side; });
+    const std::vector<Vec3> intact = cut.body.mesh().nodes;
+    tally.volume += cut.body.volume();
+
+    std::vector<std::uint64_t> fingerprints{fingerprint(cut.body)};
+    Pieces pieces = find_pieces(cut.body, cut.held);
+    const auto take = [&](const mesh::MeshEdit& edit) {
+      cut.apply(edit);
+      update_pieces(pieces, cut.body, edit, cut.held);
+      fingerprints.push_back(fingerprint(cut.body));
+    };
+    for (int crack = 0; crack < 3; ++crack) {
+      RandomFront front(dice, box);
+      for (int step = 0; step < 12; ++step) {
+        const CutSurface surface = front.advance(dice, cut.settings.mean_edge);
+        const Incision incision = cut.incise(surface);
+        if (incision.edit.empty()) continue;
+        const double volume = cut.body.volume();
+        take(incision.edit);
+        check(cut, incision, volume);
+        if (testing::Test::HasFatalFailure()) return;
+        ASSERT_EQ(pieces, find_pieces(cut.body, cut.held));
+        mesh::MeshEdit freeze;
+        freeze.frozen = unsupported_tets(cut.body, pieces);
+        if (!freeze.empty()) take(freeze);
+        ASSERT_EQ(pieces, find_pieces(cut.body, cut.held));
+        ++tally.advances;
+        tally.ends += static_cast<int>(incision.edit.moved.size()) + incision.nodes_off_plane;
+        tally.off_plane += incision.nodes_off_plane;
+        tally.lost += incision.volume_lost;
+      }
+    }
+    tally.most_pieces = std::max(tally.most_pieces, static_cast<int>(pieces.count()));
+    for (std::size_t node = 0; node < cut.body.mesh().node_count(); ++node) {
+      const NodeId original = cut.body.original(NodeId(node));
+      if (cut.settings.immovable[original.index()] == 0) continue;
+      ASSERT_EQ(cut.body.mesh().nodes[node], intact[original.index()]);
+    }
+    for (; cut.body.topology() > 0; fingerprints.pop_back()) {
+      ASSERT_EQ(fingerprint(cut.body), fingerprints.back());
+      cut.undo();
+    }
+    ASSERT_EQ(fingerprint(cut.body), fingerprints.front());
+  }
+
+  static void check(const CutBody& cut, const Incision& incision, double volume_before) {
+    const mesh::MeshEdit& edit = incision.edit;
+    ASSERT_GT(incision.edges_cut, 0);
+    ASSERT_TRUE(edit.frozen.empty());
+    ASSERT_TRUE(std::is_sorted(edit.removed.begin(), edit.removed.end()));
+    ASSERT_TRUE(std::is_sorted(edit.moved.begin(), edit.moved.end(),
+                               [](const auto& a, const auto& b) { return a.node < b.node; }));
+    ASSERT_TRUE(std::is_sorted(edit.rewired.begin(), edit.rewired.end(),
+                               [](const auto& a, const auto& b) { return a.tet < b.tet; }));
+    if (cut.settings.method == IncisionMethod::split) {
+      ASSERT_TRUE(edit.removed.empty());
+    } else {
+      ASSERT_FALSE(edit.removed.empty());
+      ASSERT_TRUE(edit.copied.empty() && edit.rewired.empty());
+    }
+    // Sums of a few thousand volumes, each right to some 1e-16 of products of coordinates.
+    ASSERT_NEAR(cut.body.volume(), volume_before - incision.volume_lost, 1e-12 * cut.body.volume());
+    expect_round(cut);
+    if (testing::Test::HasFatalFailure()) return;
+    expect_manifold_faces(cut.body);
+  }
+};
+
+TEST_P(Incisions, LeaveSoundBodies) {
+  const int seeds = std::getenv("RHEXIS_FULL") == nullptr ? 3 : 300;
+  Tally tally;
+  for (int seed = 0; seed < seeds; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    tear(static_cast<std::uint64_t>(seed), tally);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(tally.advances, 5 * seeds);
+  EXPECT_GT(tally.most_pieces, 1);
+  rhexis::test::measured(
+      "{} advances, {:.2f} nodes off the plane for one that it called, {:.3f} of the volume lost, "
+      "{} pieces at most",
+      tally.advances, static_cast<double>(tally.off_plane) / tally.ends, tally.lost / tally.volume, tally.most_pieces);
+}
+
+std::string name_of(const testing::TestParamInfo<Incisions::ParamType>& info) {
+  const char* const shapes[] = {"plate", "bar", "cube", "tube", "rod"};
+  return std::string(std::get<0>(info.param) == IncisionMethod::split ? "split_" : "keep_nodes_") +
+         shapes[static_cast<std::size_t>(std::get<1>(info.param))];
+}
+
+INSTANTIATE_TEST_SUITE_P(Bodies, Incisions,
+                         testing::Combine(testing::Values(IncisionMethod::keep_nodes, IncisionMethod::split),
+                                          testing::Values(Shape::plate, Shape::bar, Shape::cube, Shape::tube,
+                                                          Shape::rod)),
+                         name_of);
+
+}  // namespace
+}  // namespace rhexis::fracture::test
