@@ -6,8 +6,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "linalg/front_blas.h"
-#include "linalg/one_thread.h"
+#include "linalg/front_kernels.h"
 
 namespace rhexis::linalg {
 namespace {
@@ -176,6 +175,7 @@ std::vector<Run> FrontMaker::find_runs(const Front& before) const {
 void FrontMaker::add_update(std::int32_t component, const Front& before) {
   std::vector<Run> runs = find_runs(before);
   const LowerTriangle& U = before.update;
+  const FrontKernels& kernels = front_kernels();
   const std::int32_t p = f_.pivots;
   const std::int32_t load = before.boundary();
   for (std::size_t r = 0; r < runs.size(); ++r) {
@@ -191,8 +191,7 @@ void FrontMaker::add_update(std::int32_t component, const Front& before) {
         if (i < p && j >= p) {
           for (std::int32_t k = 0; k < count; ++k) panel(j, i + k) += a[k];
         } else {
-          double* const b = to + i;
-          for (std::int32_t k = 0; k < count; ++k) b[k] += a[k];
+          kernels.add(to + i, a, count);
         }
       }
       to[f_.size()] += column[load];
@@ -208,39 +207,22 @@ void FrontMaker::factor() {
   const double b = f_.boundary() + 1;
   f_.flops = p * p * p / 3.0 + p * p * b + p * b * b;
   if (f_.pivots == 0) return;
-  stay_on_one_thread();
-  const int pivots = f_.pivots;
-  const int below = f_.boundary() + 1;
-  const int ld = f_.ld();
-  int info = 0;
-  dpotrf_("L", &pivots, f_.panel.get(), &ld, &info);
-  f_.positive_definite = info == 0;
+  std::vector<double> work(static_cast<std::size_t>(f_.ld()) * kFactorWidth);
+  f_.positive_definite = front_kernels().factor(f_.panel.get(), f_.ld(), f_.pivots, f_.ld(), work.data());
   for (std::int32_t j = 0; j < f_.pivots && f_.positive_definite; ++j) {
     const double pivot = panel(j, j) * panel(j, j);
     // Also false for what is not a number.
     f_.positive_definite = pivot > in_.null_pivot * diagonal_[static_cast<std::size_t>(j)] && std::isfinite(pivot);
   }
-  if (!f_.positive_definite) return;
-  const double one = 1.0;
-  dtrsm_("R", "L", "T", "N", &below, &pivots, &one, f_.panel.get(), &ld, f_.panel.get() + pivots, &ld);
-  subtract_squares();
+  if (f_.positive_definite) subtract_squares();
 }
 
 void FrontMaker::subtract_squares() {
   const auto one_block = [&](std::size_t block) {
     const int b = static_cast<int>(block);
-    const double minus = -1.0;
-    const double one = 1.0;
-    const int columns = f_.update.columns(b);
-    const int rows = f_.update.rows(b);
-    const int rest = rows - columns;
-    const int ld = f_.ld();
     const double* const L = f_.panel.get() + f_.pivots + LowerTriangle::first_column(b);
-    double* const U = f_.update.block(b);
-    dsyrk_("L", "N", &columns, &f_.pivots, &minus, L, &ld, &one, U, &rows);
-    if (rest > 0) {
-      dgemm_("N", "T", &rest, &columns, &f_.pivots, &minus, L + columns, &ld, L, &ld, &one, U + columns, &rows);
-    }
+    front_kernels().subtract_product(f_.update.block(b), f_.update.rows(b), L, L, f_.ld(), f_.update.rows(b),
+                                     f_.update.columns(b), f_.pivots);
   };
   const auto blocks = static_cast<std::size_t>(f_.update.blocks());
   if (in_.may_fork) {

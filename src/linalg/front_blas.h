@@ -1,6 +1,8 @@
 #pragma once
 
-/// The dense kernels that fronts are factored and solved with: BLAS and LAPACK as Fortran sees them, column-major.
+/// BLAS and LAPACK as Fortran sees them, column-major. NOT FOR TWO THREADS AT ONCE, whatever they do: Debian's OpenBLAS
+/// without threads hands the same work space to two callers, CHOLMOD's calls among them. front_kernels.h has none of
+/// this, is as fast, and `factor` there is dpotrf and dtrsm in one.
 
 extern "C" {
 void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);

@@ -5,8 +5,8 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "linalg/front_blas.h"
 #include "linalg/front_core.h"
+#include "linalg/front_kernels.h"
 
 namespace rhexis::linalg {
 namespace {
@@ -16,22 +16,6 @@ std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 /// y of the loads, as it stands in the panel's last row.
 Eigen::Map<const VectorX, 0, Eigen::InnerStride<>> load_solution(const Front& front) {
   return {front.panel.get() + front.size(), front.pivots, Eigen::InnerStride<>(front.ld())};
-}
-
-/// r over a front's dofs, columns side by side: y = L_pp^-1 r_p on top, r_b - L_bp y below.
-void eliminate(const Front& front, Eigen::MatrixXd& r) {
-  const int pivots = front.pivots;
-  const int boundary = front.boundary();
-  const int columns = static_cast<int>(r.cols());
-  const int ld = front.ld();
-  const int ldr = front.size();
-  const double one = 1.0;
-  const double minus = -1.0;
-  if (pivots == 0 || columns == 0) return;
-  dtrsm_("L", "L", "N", "N", &pivots, &columns, &one, front.panel.get(), &ld, r.data(), &ldr);
-  if (boundary == 0) return;
-  dgemm_("N", "N", &boundary, &columns, &pivots, &minus, front.panel.get() + pivots, &ld, r.data(), &ldr, &one,
-         r.data() + pivots, &ldr);
 }
 
 }  // namespace
@@ -82,7 +66,8 @@ FrontTree::Forward FrontTree::forward(std::span<const std::int32_t> dof, const E
   for (const std::int32_t c : path) {
     const Front& front = *core.front(c);
     Eigen::MatrixXd& r = reach(c);
-    eliminate(front, r);
+    front_kernels().forward(front.panel.get(), front.ld(), front.pivots, front.boundary(), r.data(), front.size(),
+                            static_cast<int>(r.cols()));
     out.front.push_back(c);
     out.y.emplace_back(r.topRows(front.pivots));
     out.gram.noalias() += out.y.back().transpose() * out.y.back();
@@ -137,15 +122,7 @@ void FrontTree::backward(const VectorX& x_kept, const Forward* forward, const Ve
         for (std::int32_t k = pivots; k < front.size(); ++k) work[k] = x[front.dofs[at(k)]];
         work.head(pivots) = load_amount * load_solution(front);
         if (const Eigen::MatrixXd* const own = y[at(together[i])]) work.head(pivots).noalias() += *own * amount;
-        const int ld = front.ld();
-        const int step = 1;
-        const double one = 1.0;
-        const double minus = -1.0;
-        if (boundary > 0) {
-          dgemv_("T", &boundary, &pivots, &minus, front.panel.get() + pivots, &ld, work.data() + pivots, &step, &one,
-                 work.data(), &step);
-        }
-        dtrsv_("L", "T", "N", &pivots, front.panel.get(), &ld, work.data(), &step);
+        front_kernels().backward(front.panel.get(), front.ld(), pivots, boundary, work.data());
         for (std::int32_t k = 0; k < pivots; ++k) x[front.dofs[at(k)]] = work[k];
       }
     });

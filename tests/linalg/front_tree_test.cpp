@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "mesh/generate.h"
-#include "tests/linalg/front_body.h"
+#include "tests/support/front_body.h"
 
 namespace rhexis::linalg {
 namespace {

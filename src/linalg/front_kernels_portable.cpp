@@ -1,0 +1,2 @@
+#define RHEXIS_SIMD_NAMESPACE portable
+#include "linalg/front_kernels.inc.h"
