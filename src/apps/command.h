@@ -44,6 +44,6 @@ void add_solve(CLI::App& app, const Common& common, int& code);
 void add_check(CLI::App& app, const Common& common, int& code);
 void add_compare(CLI::App& app, const Common& common, int& code);
 void add_mesh(CLI::App& app, const Common& common, int& code);
-void add_scene_reference(CLI::App& app, int& code);
+void add_scene_reference(CLI::App& app, const Common& common, int& code);
 
 }  // namespace rhexis::apps

@@ -61,6 +61,8 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"TubeWithoutRadius", "mesh make tube x.msh --length 0.04 --nodes 400", "--radius is required"},
         Misuse{"TubeWithoutLength", "mesh make tube x.msh --radius 0.005 --nodes 400", "--length is required"},
         Misuse{"NegativeNumberIsAValue", "mesh make tube x.msh --nodes 400 --radius -0.005 --length 0.04", "radius"},
+        Misuse{"ReferenceWithATypo", "scene-reference --shema", "unknown option '--shema' (did you mean '--schema'?)"},
+        Misuse{"ReferenceOfSomething", "scene-reference model", "not expected: model (see `rhexis scene-reference"},
         Misuse{"UnknownUnit", "mesh info none.msh --unit furlong",
                "--unit: 'furlong' is no length unit (one of m, dm, cm, mm, um, in) (see `rhexis mesh info "
                "--help`)"}),
@@ -96,6 +98,19 @@ TEST(CommandLine, ValuesAreNotTakenForOptions) {
 TEST(CommandLine, HelpWinsOverWhatFollows) {
   EXPECT_EQ(test::run_rhexis("--help slove").code, 0);
   EXPECT_EQ(test::run_rhexis("--version").code, 0);
+}
+
+TEST(SceneReferenceCommand, PrintsWhatTheOptionsOfEveryCommandSay) {
+  EXPECT_THAT(test::run_rhexis("scene-reference").out, testing::StartsWith("# Scenes"));
+  const std::string schema = test::run_rhexis("scene-reference --schema").out;
+  EXPECT_TRUE(json::parse(schema)["properties"].contains("mesh"));
+  EXPECT_EQ(test::run_rhexis("scene-reference --json").out, schema);
+  EXPECT_EQ(test::run_rhexis("--json scene-reference --quiet").out, schema);
+  for (const char* quiet : {"scene-reference -q", "scene-reference --schema --quiet"}) {
+    const test::Ran ran = test::run_rhexis(quiet);
+    EXPECT_EQ(ran.code, 0);
+    EXPECT_EQ(ran.out + ran.err, "") << quiet;
+  }
 }
 
 TEST(MeshCommand, ReadsInTheUnitGiven) {
