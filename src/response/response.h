@@ -28,6 +28,8 @@ struct FollowReport {
   double update_seconds = 0.0;  ///< on the calling thread, all included
   double wait_seconds = 0.0;    ///< of that, waiting for work in the background
   bool refreshed = false;       ///< the window moved
+  bool held = true;  ///< false: a held node has no tet in the solve any more, its rows and columns of the compliance
+                     ///< are zero, and the hand has to let go
 };
 
 class Response {
@@ -41,7 +43,7 @@ class Response {
   /// After the body has given an edit back.
   virtual FollowReport go_back(const mesh::MeshEdit& edit, std::span<const Focus> focus) = 0;
 
-  /// L_cc of the held nodes, m/N, 3 per node squared.
+  /// L_cc of the held nodes, m/N, 3 per node squared. Rows and columns of a component that a support holds are zero.
   [[nodiscard]] virtual const Eigen::MatrixXd& compliance() const = 0;
   /// Displacement of the held nodes by the loads alone, m, 3 per node.
   [[nodiscard]] virtual const VectorX& rest() const = 0;
@@ -50,8 +52,8 @@ class Response {
   virtual void displacement(std::span<const NodeId> nodes, const VectorX& held_forces, VectorX& out) = 0;
   /// Of every node of the body, m; zero at nodes out of the solve.
   virtual void whole_displacement(const VectorX& held_forces, VectorX& out) = 0;
-  /// Elastic energy relative to the equilibrium under the loads alone in the intact body, J, with forces on the held
-  /// nodes.
+  /// Potential energy of the body and its loads, the hand's forces aside, with forces on the held nodes, J; relative to
+  /// the equilibrium under the loads alone when the response was made. What is frozen takes its energy along.
   [[nodiscard]] virtual double stored_energy(const VectorX& held_forces) = 0;
   [[nodiscard]] virtual std::size_t memory_bytes() const = 0;
 };

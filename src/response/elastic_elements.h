@@ -1,0 +1,65 @@
+#pragma once
+
+/// The tets of a torn body of small strains as the front trees read them: those of a window, or those outside of it.
+
+#include <cstdint>
+#include <vector>
+
+#include "linalg/front_tree.h"
+#include "material/parameters.h"
+#include "mesh/torn_mesh.h"
+#include "model/loading.h"
+#include "response/window.h"
+
+namespace rhexis::response {
+
+/// What does not change while the body tears.
+struct ElasticBody {
+  material::Elastic elastic;
+  double density = 0.0;         ///< kg/m^3
+  Vec3 gravity = Vec3::Zero();  ///< m/s^2
+  /// Of the intact body, ascending by dof; a copy of a node is held as the node is.
+  std::vector<model::PrescribedDof> supports;
+  /// N, 3 per node of the intact body, or empty. Stays with the node of that number; its copies take none of it, and it
+  /// is gone when the node leaves the solve.
+  VectorX dead_force;
+};
+
+/// The same, ready to be asked.
+struct ElasticModel {
+  ElasticModel(ElasticBody of, std::size_t intact_nodes);
+  ElasticBody body;
+  std::vector<std::uint8_t> held;  ///< 3 per intact node
+  VectorX value;                   ///< m, 3 per intact node, zero where free
+  bool moves_supports = false;     ///< some value is not zero
+};
+
+class ElasticElements final : public linalg::ElementSource {
+ public:
+  enum class Side { inside, outside };
+  /// All of them outlive this.
+  ElasticElements(const mesh::TornMesh& mesh, const ElasticModel& model, const Window& window, Side side);
+
+  [[nodiscard]] std::int32_t node_count() const override;
+  [[nodiscard]] std::int32_t element_count() const override;
+  [[nodiscard]] bool is_active(std::int32_t element) const override;
+  [[nodiscard]] std::array<std::int32_t, 4> nodes(std::int32_t element) const override;
+  void stiffness(std::int32_t element, linalg::ElementMatrix& out) const override;
+  /// rho g V / 4 at each corner, minus what the prescribed displacements of the corners take: K_e u_held.
+  void load(std::int32_t element, linalg::ElementVector& out) const override;
+  /// Of the nodes on the rim, whose load must count once, the outside has it.
+  [[nodiscard]] Vec3 node_load(std::int32_t node) const override;
+  [[nodiscard]] bool is_free(std::int32_t dof) const override;
+
+ private:
+  const mesh::TornMesh& mesh_;
+  const ElasticModel& model_;
+  const Window& window_;
+  Side side_;
+};
+
+/// 1/2 u K_e u - f_e u over all tets in the solve for u that is prescribed at the supports and zero elsewhere, J: what
+/// the potential energy has beside the part of the free dofs.
+[[nodiscard]] double support_energy(const mesh::TornMesh& mesh, const ElasticModel& model);
+
+}  // namespace rhexis::response
