@@ -41,6 +41,7 @@ void print_json(const nlohmann::ordered_json& json);
 
 /// Each adds its subcommand to the app and writes its exit code to `code` when it has run.
 void add_solve(CLI::App& app, const Common& common, int& code);
+void add_tear(CLI::App& app, const Common& common, int& code);
 void add_check(CLI::App& app, const Common& common, int& code);
 void add_compare(CLI::App& app, const Common& common, int& code);
 void add_mesh(CLI::App& app, const Common& common, int& code);

@@ -48,6 +48,7 @@ int run(int argc, char** argv) {
 
   int code = kDone;
   add_solve(app, common, code);
+  add_tear(app, common, code);
   add_check(app, common, code);
   add_compare(app, common, code);
   add_mesh(app, common, code);

@@ -1,14 +1,14 @@
 // rhexis solve SCENE [--out DIR] [--set key=value ...]: one equilibrium, load-stepped.
 
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <vector>
 
-#include "apps/command.h"
+#include "apps/interrupt.h"
+#include "apps/model_text.h"
 #include "apps/progress.h"
+#include "apps/scene_options.h"
 #include "base/clock.h"
-#include "base/parallel.h"
 #include "result/fields.h"
 #include "result/result_folder.h"
 #include "result/summary.h"
@@ -20,29 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-
-struct SceneOptions {
-  std::string scene;
-  std::string out;
-  std::vector<std::string> overrides;
-};
-
-/// Reads the scene and builds the body; prints what was noted and warned of.
-Expected<scene::Problem> load(const SceneOptions& options) {
-  const Expected<scene::Scene> scene = scene::read_scene(options.scene, options.overrides);
-  if (!scene) return fail(scene.error());
-  set_thread_count(scene->solver.threads);
-  Expected<scene::Problem> problem = scene::build_problem(*scene);
-  if (!problem) return fail(problem.error());
-  for (const std::string& note : problem->notes) spdlog::info("{}", note);
-  for (const std::string& warning : problem->warnings) spdlog::warn("{}", warning);
-  return problem;
-}
-
-std::string model_text(const scene::Problem& problem) {
-  return problem.model->name() == "hyperelastic" ? fmt::format("hyperelastic, beta {:.4g}", problem.settings.beta)
-                                                 : std::string(problem.model->name());
-}
 
 void print_outcome(const ordered_json& summary, const fs::path& out) {
   const auto& time = summary["time"];
@@ -68,25 +45,6 @@ void print_outcome(const ordered_json& summary, const fs::path& out) {
   fmt::print("results         {}\n", (out / "result.vtkhdf").string());
 }
 
-/// Ctrl-C ends a run after the step in flight, with the results so far; pressed twice it ends the program.
-class Interrupt {
- public:
-  Interrupt() {
-    asked_ = 0;
-    std::signal(SIGINT, [](int) {
-      asked_ = 1;
-      std::signal(SIGINT, SIG_DFL);
-    });
-  }
-  ~Interrupt() { std::signal(SIGINT, SIG_DFL); }
-  Interrupt(const Interrupt&) = delete;
-  Interrupt& operator=(const Interrupt&) = delete;
-  [[nodiscard]] bool asked() const { return asked_ != 0; }
-
- private:
-  inline static volatile std::sig_atomic_t asked_ = 0;
-};
-
 std::string progress_text(const solver::StepReport& step) {
   return fmt::format("load {:.4g}: {} iterations, residual {:.1e}{}", step.load, step.iterations,
                      std::max(step.residual_u, step.residual_lambda), step.message.empty() ? "" : ", " + step.message);
@@ -94,11 +52,14 @@ std::string progress_text(const solver::StepReport& step) {
 
 int solve(const SceneOptions& options, const Common& common) {
   const Stopwatch watch;
-  Expected<scene::Problem> loaded = load(options);
-  if (!loaded) return report(loaded.error());
-  const scene::Problem& problem = *loaded;
+  const Expected<scene::Scene> scene = read_scene(options);
+  if (!scene) return report(scene.error());
+  const Expected<scene::Problem> built = scene::build_problem(*scene);
+  if (!built) return report(built.error());
+  const scene::Problem& problem = *built;
+  log_remarks(problem.notes, problem.warnings);
   const double read_seconds = watch.seconds();
-  const fs::path out = options.out.empty() ? fs::path("out") / fs::path(options.scene).stem() : fs::path(options.out);
+  const fs::path out = options.folder();
   Expected<result::ResultFolder> folder = result::ResultFolder::open(out);
   if (!folder) return report(folder.error());
   say(common, "{}\nbody            {} nodes, {} tets, {} unknowns\nmodel           {}, {} solver\n", problem.title,
@@ -148,65 +109,14 @@ int solve(const SceneOptions& options, const Common& common) {
   return kFailedComputation;
 }
 
-int check(const SceneOptions& options, const Common& common) {
-  const Expected<scene::Problem> loaded = load(options);
-  if (!loaded) return report(loaded.error());
-  const scene::Problem& problem = *loaded;
-  const ordered_json json{{"title", problem.title},
-                          {"model", problem.model->name()},
-                          {"nodes", problem.mesh.node_count()},
-                          {"tets", problem.mesh.tet_count()},
-                          {"unknowns", result::unknown_count(*problem.model, problem.loading)},
-                          {"held", problem.loading.supports.size()},
-                          {"dead_force", problem.loading.dead_force.norm()},
-                          {"pressures", problem.loading.pressures.size()},
-                          {"linear", problem.options.linear},
-                          {"steps", problem.options.steps},
-                          {"memory", {{"model", problem.model->memory_bytes()}}},
-                          {"notes", problem.notes},
-                          {"warnings", problem.warnings}};
-  if (common.json) {
-    print_json(json);
-    return kDone;
-  }
-  say(common, "{}\n", problem.title);
-  say(common, "body            {} nodes, {} tets, {:.4g} m^3\n", problem.mesh.node_count(), problem.mesh.tet_count(),
-      mesh::total_volume(problem.mesh));
-  say(common, "model           {}: {} unknowns, {} displacements held, {:.1f} MB before factorisation\n",
-      model_text(problem), result::unknown_count(*problem.model, problem.loading), problem.loading.supports.size(),
-      static_cast<double>(problem.model->memory_bytes()) * 1e-6);
-  say(common, "would solve     {} load steps, {} solver, tolerance {:g}\n", problem.options.steps,
-      problem.options.linear, problem.options.tolerance);
-  say(common, "nothing is wrong with {}\n", options.scene);
-  return kDone;
-}
-
-std::shared_ptr<SceneOptions> add_scene_options(CLI::App& command) {
-  auto options = std::make_shared<SceneOptions>();
-  command.add_option("scene", options->scene, "scene file (docs/scene.md)")->required();
-  command.add_option("--set", options->overrides, "override a value of the scene, as often as wanted")
-      ->type_name("KEY=VALUE")
-
-      ->expected(1)
-      ->take_all();
-  return options;
-}
-
 }  // namespace
 
 void add_solve(CLI::App& app, const Common& common, int& code) {
   CLI::App* command = app.add_subcommand("solve", "Solve one equilibrium, load step by load step");
   command->footer("Example: rhexis solve scenes/vessel.toml --out out/vessel --set model.beta=auto");
   const auto options = add_scene_options(*command);
-  command->add_option("--out", options->out, "folder for the results; out/<scene> unless given");
+  add_out_option(*command, *options);
   command->callback([options, &common, &code] { code = solve(*options, common); });
-}
-
-void add_check(CLI::App& app, const Common& common, int& code) {
-  CLI::App* command = app.add_subcommand("check", "Read and validate everything, solve nothing");
-  command->footer("Example: rhexis check scenes/vessel.toml");
-  const auto options = add_scene_options(*command);
-  command->callback([options, &common, &code] { code = check(*options, common); });
 }
 
 }  // namespace rhexis::apps

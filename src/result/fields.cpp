@@ -37,9 +37,8 @@ VectorX on_vertices(const model::DisplacementSpace& space, VectorX force) {
 
 }  // namespace
 
-std::vector<Field> make_fields(const mesh::TetMesh& mesh, const model::Model& model, const model::State& state,
-                               const model::TetFields& tets, const VectorX& reaction) {
-  const std::size_t count = mesh.tet_count();
+std::vector<Field> fields_of_tets(const model::TetFields& tets) {
+  const std::size_t count = tets.J.size();
   Field pressure{"pressure", Centering::cell, 1, std::vector<double>(count)};
   Field principal{"principal_max", Centering::cell, 1, std::vector<double>(count)};
   Field mises{"von_mises", Centering::cell, 1, std::vector<double>(count)};
@@ -51,19 +50,25 @@ std::vector<Field> make_fields(const mesh::TetMesh& mesh, const model::Model& mo
     const double shear = s[3] * s[3] + s[4] * s[4] + s[5] * s[5];
     mises.values[t] = std::sqrt(0.5 * normal + 3.0 * shear);
   }
-
   std::vector<Field> fields;
-  fields.push_back(node_field("displacement", state.u, mesh.node_count()));
-  if (reaction.size() > 0)
-    fields.push_back(node_field("reaction", on_vertices(model.space(), reaction), mesh.node_count()));
-  if (model.pressure_at_vertices())
-    fields.push_back({"lambda", Centering::point, 1, std::vector<double>(state.lambda.begin(), state.lambda.end())});
   fields.push_back({"lambda", Centering::cell, 1, tets.lambda});
   fields.push_back(std::move(pressure));
   fields.push_back({"stress", Centering::cell, 6, tets.stress});
   fields.push_back(std::move(principal));
   fields.push_back(std::move(mises));
   fields.push_back({"J", Centering::cell, 1, tets.J});
+  return fields;
+}
+
+std::vector<Field> make_fields(const mesh::TetMesh& mesh, const model::Model& model, const model::State& state,
+                               const model::TetFields& tets, const VectorX& reaction) {
+  std::vector<Field> fields;
+  fields.push_back(node_field("displacement", state.u, mesh.node_count()));
+  if (reaction.size() > 0)
+    fields.push_back(node_field("reaction", on_vertices(model.space(), reaction), mesh.node_count()));
+  if (model.pressure_at_vertices())
+    fields.push_back({"lambda", Centering::point, 1, std::vector<double>(state.lambda.begin(), state.lambda.end())});
+  for (Field& field : fields_of_tets(tets)) fields.push_back(std::move(field));
   return fields;
 }
 

@@ -19,6 +19,9 @@ namespace rhexis::result {
                                                    const model::State& state, const model::TetFields& tets,
                                                    const VectorX& reaction);
 
+/// The CellData of it that come from the tets alone: lambda, pressure, stress, principal_max, von_mises and J.
+[[nodiscard]] std::vector<mesh::Field> fields_of_tets(const model::TetFields& tets);
+
 /// Numbers of a state that the summary reports.
 struct Measures {
   double volume_ratio = 1.0;  ///< deformed over reference volume

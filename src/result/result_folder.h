@@ -24,6 +24,9 @@ class ResultFolder {
 
   /// Writes steps/step_NNNN.vtu and the series up to it. `load`: fraction of the whole load, the series' value.
   Expected<void> write_step(double load, const mesh::TetMesh& mesh, const std::vector<mesh::Field>& fields);
+  /// Writes steps/topology_NNNN.vtu and .vtkhdf and the series up to it, whose value is `topology`.
+  Expected<void> write_topology(std::size_t topology, const mesh::TetMesh& mesh,
+                                const std::vector<mesh::Field>& fields);
   Expected<void> write_result(const mesh::TetMesh& mesh, const std::vector<mesh::Field>& fields);
   Expected<void> write_summary(const nlohmann::ordered_json& summary);
 

@@ -34,8 +34,9 @@ Expected<TearProblem> build_tear_problem(const Scene& scene) {
   if (Expected<void> done = check_sections(scene); !done) return fail(std::move(done.error()));
   TearProblem problem;
   problem.title = title_of(scene);
-  problem.elastic = scene.material.elastic;
-  problem.body_force = scene.material.density * scene.gravity;
+  problem.body.elastic = scene.material.elastic;
+  problem.body.density = scene.material.density;
+  problem.body.gravity = scene.gravity;
   problem.fracture = *scene.fracture;
   problem.cracks = scene.cracks;
   problem.interaction = scene.interaction;
@@ -48,11 +49,11 @@ Expected<TearProblem> build_tear_problem(const Scene& scene) {
   const model::DisplacementSpace space = model::make_p1_space(body->mesh);
   Expected<std::vector<model::PrescribedDof>> supports = make_supports(scene, *body, space);
   if (!supports) return fail(std::move(supports.error()));
-  problem.supports = std::move(*supports);
-  problem.nodal_force = VectorX::Zero(static_cast<Eigen::Index>(space.dof_count()));
-  if (Expected<void> done = add_tractions(scene, *body, space, problem.nodal_force); !done)
+  problem.body.supports = std::move(*supports);
+  problem.body.dead_force = VectorX::Zero(static_cast<Eigen::Index>(space.dof_count()));
+  if (Expected<void> done = add_tractions(scene, *body, space, problem.body.dead_force); !done)
     return fail(std::move(done.error()));
-  if (!problem.body_force.allFinite())
+  if (!(scene.material.density * scene.gravity).allFinite())
     return fail("the weight is too large for a computer's numbers", "a smaller density or gravity", scene.file);
   problem.mesh = std::move(body->mesh);
   return problem;

@@ -7,18 +7,15 @@
 
 #include "base/error.h"
 #include "mesh/tet_mesh.h"
-#include "model/loading.h"
+#include "response/elastic_elements.h"
 #include "scene/scene.h"
 
 namespace rhexis::scene {
 
 struct TearProblem {
-  std::string title;   ///< of the scene; its file's name where it has none
-  mesh::TetMesh mesh;  ///< with the scene's sets
-  material::Elastic elastic;
-  Vec3 body_force = Vec3::Zero();              ///< rho0 g, N/m3
-  std::vector<model::PrescribedDof> supports;  ///< ascending; nodes that no tet has are held
-  VectorX nodal_force;                         ///< of the tractions, N, 3 per node
+  std::string title;           ///< of the scene; its file's name where it has none
+  mesh::TetMesh mesh;          ///< with the scene's sets
+  response::ElasticBody body;  ///< nodes that no tet has are held
   FractureSettings fracture;
   std::vector<CrackSettings> cracks;
   InteractionSettings interaction;

@@ -51,15 +51,16 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 TEST(TearProblem, HoldsWhatAnInteractionNeeds) {
   const Expected<TearProblem> problem = build(kPlate);
   ASSERT_TRUE(problem.has_value()) << problem.error().message();
-  EXPECT_EQ(problem->body_force, Vec3(0.0, 0.0, -9810.0));
+  EXPECT_EQ(problem->body.density, 1000.0);
+  EXPECT_EQ(problem->body.gravity, Vec3(0.0, 0.0, -9.81));
   EXPECT_EQ(problem->fracture.advance_threshold, 0.2e6);
   ASSERT_EQ(problem->pulls.size(), 1U);
   EXPECT_FALSE(problem->pulls[0].push);
-  EXPECT_FALSE(problem->supports.empty());
+  EXPECT_FALSE(problem->body.supports.empty());
   // The traction alone: the weight goes with the tets, which may be torn off.
   Vec3 sum = Vec3::Zero();
-  for (Eigen::Index node = 0; node < problem->nodal_force.size() / 3; ++node)
-    sum += problem->nodal_force.segment<3>(3 * node);
+  for (Eigen::Index node = 0; node < problem->body.dead_force.size() / 3; ++node)
+    sum += problem->body.dead_force.segment<3>(3 * node);
   EXPECT_LT((sum - Vec3(-0.5, 0.0, 0.0)).norm(), 1e-14);  // a few hundred sums of 2^-53
 }
 

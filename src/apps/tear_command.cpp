@@ -1,0 +1,150 @@
+// rhexis tear SCENE [--out DIR] [--set key=value ...]: the scene's scripted pulls, without a screen.
+
+#include <filesystem>
+
+#include "apps/interrupt.h"
+#include "apps/progress.h"
+#include "apps/scene_options.h"
+#include "apps/tear_output.h"
+#include "base/clock.h"
+#include "scene/tear_problem.h"
+#include "session/tear_session.h"
+
+namespace rhexis::apps {
+namespace {
+
+using session::TearSession;
+
+session::TearSettings settings_of(const scene::TearProblem& problem) {
+  const scene::FractureSettings& fracture = problem.fracture;
+  return {
+      .body = problem.body,
+      .criterion = fracture.criterion.value_or(""),
+      .strength = fracture.strength,
+      .toughness = fracture.toughness,
+      .advance_threshold = fracture.advance_threshold.value_or(0.0),
+      .ahead_only = fracture.ahead_only,
+      .local_radius = fracture.local_radius.value_or(0.0),
+      .incision = fracture.incision == "split" ? fracture::IncisionMethod::split : fracture::IncisionMethod::keep_nodes,
+      .contact = problem.interaction.blend_contact ? response::ContactRule::blend : response::ContactRule::consistent};
+}
+
+std::vector<session::CrackLine> cracks_of(const scene::TearProblem& problem) {
+  std::vector<session::CrackLine> lines;
+  for (const scene::CrackSettings& crack : problem.cracks) lines.push_back({crack.from, crack.to, crack.through});
+  return lines;
+}
+
+/// The scripted hand, tick by tick. Ends early on trouble, on an error of the output, or when asked to.
+class Script {
+ public:
+  Script(const scene::TearProblem& problem, TearSession& tear, TearOutput& output)
+      : problem_(problem), tear_(tear), output_(output) {
+    for (const scene::PullSettings& pull : problem.pulls) ticks_ += ticks_of(pull.seconds) + ticks_of(pull.hold);
+  }
+
+  /// Empty when the script came to its end; else why it did not.
+  Expected<std::string> run(Progress& progress, const Interrupt& interrupt) {
+    if (Expected<void> done = output_.write_topology(tear_, 0.0); !done) return fail(std::move(done.error()));
+    for (const scene::PullSettings& pull : problem_.pulls) {
+      const auto mode = pull.push ? response::ContactMode::push : response::ContactMode::hold;
+      if (const Expected<void> holds = tear_.grasp(pull.at, mode); !holds)
+        return pull.place.fail(holds.error().what, holds.error().remedy).value().message();
+      const int moving = ticks_of(pull.seconds);
+      const int all = moving + ticks_of(pull.hold);
+      for (int k = 1; k <= all; ++k) {
+        const Vec3 hand = pull.by * (static_cast<double>(std::min(k, moving)) / moving);
+        Expected<std::string> trouble = tick(hand, progress);
+        if (!trouble || !trouble->empty()) return trouble;
+        if (interrupt.asked()) return std::string("stopped by Ctrl-C");
+      }
+      tear_.let_go();
+    }
+    return std::string();
+  }
+
+ private:
+  /// A tick is 1 ms.
+  static int ticks_of(double seconds) { return static_cast<int>(std::lround(1000.0 * seconds)); }
+
+  Expected<std::string> tick(const Vec3& hand, Progress& progress) {
+    const double time = 1e-3 * ++tick_;
+    Expected<void> written;
+    const session::TickReport report = tear_.tick(hand, [&](const session::AdvanceRecord& advance) {
+      if (written) written = output_.write_topology(tear_, time);
+      progress.update(static_cast<double>(tick_) / ticks_,
+                      fmt::format("{:.3f} s: advance {}, {:.1f} mm, {} pieces", time, tear_.advances().size(),
+                                  1e3 * advance.length, advance.pieces));
+    });
+    if (written) written = output_.write_tick(tear_, time, hand, report);
+    if (!written) return fail(std::move(written.error()));
+    return report.trouble;
+  }
+
+  const scene::TearProblem& problem_;
+  TearSession& tear_;
+  TearOutput& output_;
+  int ticks_ = 0;
+  int tick_ = 0;
+};
+
+int tear(const SceneOptions& options, const Common& common) {
+  const Stopwatch watch;
+  const Expected<scene::Scene> scene = read_scene(options);
+  if (!scene) return report(scene.error());
+  const Expected<scene::TearProblem> built = scene::build_tear_problem(*scene);
+  if (!built) return report(built.error());
+  const scene::TearProblem& problem = *built;
+  log_remarks(problem.notes, problem.warnings);
+  const double read_seconds = watch.seconds();
+  Expected<std::unique_ptr<TearSession>> made =
+      TearSession::make(problem.mesh, settings_of(problem), cracks_of(problem));
+  if (!made) return report(problem.fracture.place.fail(made.error().what, made.error().remedy).value());
+  TearSession& tear = **made;
+  const double build_seconds = watch.seconds() - read_seconds;
+  // What the first pull cannot take hold of is a mistake in the scene.
+  const scene::PullSettings& first = problem.pulls.front();
+  if (const Expected<void> holds = tear.grasp(first.at); !holds)
+    return report(first.place.fail(holds.error().what, holds.error().remedy).value());
+  tear.let_go();
+  Expected<TearOutput> output = TearOutput::open(options.folder());
+  if (!output) return report(output.error());
+  say(common, "{}\nbody            {} nodes, {} tets; model linear\ntears by        {}, {}\n", problem.title,
+      problem.mesh.node_count(), problem.mesh.tet_count(), tear.settings().criterion, problem.fracture.incision);
+
+  Expected<std::string> why;
+  {
+    const Interrupt interrupt;
+    Progress progress(!common.quiet);
+    why = Script(problem, tear, *output).run(progress, interrupt);
+  }
+  Expected<void> written;
+  if (!why) written = fail(std::move(why.error()));
+  nlohmann::ordered_json summary;
+  if (written) {
+    summary = make_tear_summary(problem, options.scene, tear, *output, *why,
+                                {.read = read_seconds, .build = build_seconds, .total = watch.seconds()});
+    written = output->close(tear, summary);
+  }
+  if (!written) {
+    report(written.error());
+    return kFailedComputation;  // the input was good: the disk filled up, or the folder went away
+  }
+  if (common.json) print_json(summary);
+  if (!common.json && !common.quiet) print_tear_outcome(summary, output->path());
+  if (why->empty()) return kDone;
+  fmt::print(stderr, "rhexis: {}: {}\n", options.scene, *why);
+  return kFailedComputation;
+}
+
+}  // namespace
+
+void add_tear(CLI::App& app, const Common& common, int& code) {
+  CLI::App* command = app.add_subcommand("tear", "Run the scene's scripted pulls: hold, pull, tear");
+  command->footer("Example: rhexis tear scenes/plate-tear.toml --out out/plate --set fracture.criterion=maximum-hoop");
+  const auto options = add_scene_options(*command);
+  add_out_option(*command, *options);
+  command->callback([options, &common, &code] { code = tear(*options, common); });
+}
+
+}  // namespace rhexis::apps

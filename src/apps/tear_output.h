@@ -1,0 +1,60 @@
+#pragma once
+
+/// The folder that `rhexis tear` leaves behind (docs/results.md): every topology as VTU and VTKHDF, the series of them,
+/// the force trace as CSV and SVG, the last state and summary.json.
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "result/result_folder.h"
+#include "scene/tear_problem.h"
+#include "session/tear_session.h"
+
+namespace rhexis::apps {
+
+class TearOutput {
+ public:
+  static Expected<TearOutput> open(const std::filesystem::path& path);
+
+  /// The body as it is now. `time` s.
+  Expected<void> write_topology(session::TearSession& tear, double time);
+  /// A line of force.csv. The file grows line by line, so that a killed run keeps what it measured.
+  Expected<void> write_tick(session::TearSession& tear, double time, const Vec3& hand,
+                            const session::TickReport& report);
+  /// result.vtkhdf, force.svg, summary.json.
+  Expected<void> close(session::TearSession& tear, const nlohmann::ordered_json& summary);
+
+  [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
+  [[nodiscard]] double largest_force() const { return largest_force_; }        ///< N
+  [[nodiscard]] double largest_displacement() const { return largest_move_; }  ///< m, over the topologies written
+
+ private:
+  explicit TearOutput(result::ResultFolder folder) : folder_(std::move(folder)) {}
+
+  result::ResultFolder folder_;
+  std::ofstream trace_;
+  std::vector<double> time_;          ///< s, of each tick
+  std::vector<Vec3> force_;           ///< N, on the hand, of each tick
+  std::vector<double> advance_time_;  ///< s, of each advance
+  double largest_force_ = 0.0;
+  double largest_move_ = 0.0;
+};
+
+struct TearTimes {
+  double read = 0.0;   ///< s
+  double build = 0.0;  ///< s, of the session: orders, factors
+  double total = 0.0;  ///< s
+};
+
+/// `why`: empty when the script came to its end.
+[[nodiscard]] nlohmann::ordered_json make_tear_summary(const scene::TearProblem& problem, const std::string& scene,
+                                                       session::TearSession& tear, const TearOutput& output,
+                                                       const std::string& why, const TearTimes& times);
+void print_tear_outcome(const nlohmann::ordered_json& summary, const std::filesystem::path& out);
+
+}  // namespace rhexis::apps

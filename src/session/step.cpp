@@ -1,0 +1,201 @@
+// One tick, as the method has it: take the hand's motion; solve; judge; run the crack on; re-mesh; rebuild the local
+// object; update the response; and again, until the stress is below the strength.
+
+#include <algorithm>
+#include <numbers>
+
+#include "base/check.h"
+#include "base/clock.h"
+#include "fracture/energy_release.h"
+#include "fracture/pieces.h"
+#include "session/tear_session.h"
+
+namespace rhexis::session {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+std::vector<Vec3> positions(const fracture::Crack& crack) {
+  std::vector<Vec3> out;
+  for (const fracture::FrontPoint& point : crack.front) out.push_back(point.position);
+  return out;
+}
+
+}  // namespace
+
+TickReport TearSession::tick(const Vec3& hand, const Observer& observer) {
+  ++ticks_;
+  TickReport report;
+  hand_.move(hand);
+  solve_local_objects();
+  bool tears = true;
+  while (tears && report.advances < kMostAdvancesPerTick && report.trouble.empty()) {
+    tears = false;
+    for (std::size_t crack = 0; crack < cracks_.size() && report.trouble.empty(); ++crack) {
+      if (const std::optional<Judged> judged = judge(crack)) tears = run_on(crack, *judged, report, observer) || tears;
+    }
+    if (local_.empty() && report.trouble.empty()) tears = start_crack(report, observer);
+  }
+  report.force = hand_.force();
+  return report;
+}
+
+TickReport TearSession::impose(std::size_t crack, const Vec3& direction, double length, const Observer& observer) {
+  RHEXIS_CHECK(crack < cracks_.size() && !cracks_[crack].finished, "crack {} of {}", crack, cracks_.size());
+  fracture::Judgement said;
+  said.met = true;
+  said.direction = direction;
+  said.length = length;
+  const std::vector<fracture::Judgement> all(fracture::front_sections(cracks_[crack], mean_edge()).size(), said);
+  TickReport report;
+  run_on(crack, {.advance = *fracture::plan_advance(cracks_[crack], all, surroundings_)}, report, observer);
+  report.force = hand_.force();
+  return report;
+}
+
+std::optional<TearSession::Judged> TearSession::judge(std::size_t crack) const {
+  const auto running = std::find(running_.begin(), running_.end(), crack);
+  if (running == running_.end()) return std::nullopt;
+  const fracture::LocalObject& local = local_[static_cast<std::size_t>(running - running_.begin())];
+  if (!local.stable()) return std::nullopt;
+  const fracture::Crack& front = cracks_[crack];
+  std::vector<fracture::Judgement> judgements =
+      fracture::judge_front(*criterion_, front, mean_edge(), local.stresses());
+  Judged out;
+  if (settings_.toughness) {
+    const std::vector<double> release = fracture::energy_release(
+        body_, settings_.body.elastic, front, local.tets(), local.gradients(),
+        {fracture::kInnerEdges * mean_edge(), fracture::kOuterEdges * mean_edge()}, body_force_);
+    for (std::size_t k = 0; k < judgements.size(); ++k) {
+      judgements[k] = fracture::by_toughness(judgements[k], release[k], *settings_.toughness, mean_edge());
+      out.value = std::max(out.value, release[k]);
+    }
+  }
+  const std::optional<fracture::Advance> advance = fracture::plan_advance(front, judgements, surroundings_);
+  if (!advance) return std::nullopt;
+  out.advance = *advance;
+  if (!settings_.toughness) out.value = advance->value;
+  return out;
+}
+
+bool TearSession::run_on(std::size_t crack, Judged judged, TickReport& report, const Observer& observer) {
+  const Stopwatch watch;
+  fracture::Advance& advance = judged.advance;
+  Change change;
+  change.incision = fracture::cut_along(body_, surroundings_, cracks_[crack], advance, incision_settings());
+  change.record.length = advance.length;
+  change.record.angle = kDegrees * advance.angle;
+  change.record.turn = kDegrees * advance.turn;
+  change.record.value = judged.value;
+  change.record.front_before = positions(cracks_[crack]);
+  if (change.incision.edit.empty()) {
+    cracks_[crack].finished = true;  // nothing is left to cut: the front has come through
+    make_local_objects();
+    return false;
+  }
+  change.next_cracks = [&, crack] {
+    std::vector<fracture::Crack> next = cracks_;
+    const std::vector<fracture::Crack> fronts = fracture::advanced(cracks_[crack], advance, surroundings_, body_);
+    next[crack] = fronts.front();
+    next.insert(next.end(), fronts.begin() + 1, fronts.end());
+    return next;
+  };
+  change.radius = advance.length;
+  change.crack = crack;
+  change.seconds = watch.seconds();
+  return take(std::move(change), report, observer);
+}
+
+bool TearSession::start_crack(TickReport& report, const Observer& observer) {
+  if (!settings_.strength || !hand_.holds()) return false;
+  const Stopwatch watch;
+  VectorX u;
+  displacement(u);
+  const std::optional<fracture::InitialCrack> start =
+      fracture::start_crack(body_, surface_stresses(u), *settings_.strength, surroundings_);
+  if (!start) return false;
+  Change change;
+  change.incision = fracture::incise(body_, surroundings_, start->surface, incision_settings());
+  if (change.incision.edit.empty()) return false;
+  change.record.started = true;
+  change.crack = cracks_.size();
+  change.next_cracks = [&] {
+    std::vector<fracture::Crack> next = cracks_;
+    next.insert(next.end(), start->cracks.begin(), start->cracks.end());
+    return next;
+  };
+  change.seconds = watch.seconds();
+  return take(std::move(change), report, observer);
+}
+
+bool TearSession::take(Change change, TickReport& report, const Observer& observer) {
+  Stopwatch watch;
+  AdvanceRecord record = std::move(change.record);
+  record.force_before = hand_.force();
+  const std::vector<fracture::Crack> before = cracks_;
+  apply(std::move(change.incision.edit));
+  cracks_ = change.next_cracks();
+  record.remesh_seconds = change.seconds + watch.seconds();
+
+  watch.restart();
+  const mesh::MeshEdit& edit = body_.history().back();
+  reach_.resize(cracks_.size(), change.radius);
+  reach_[change.crack] = change.radius;
+  if (response_) {
+    const response::FollowReport followed = response_->follow(edit, foci());
+    record.update_seconds = followed.update_seconds;
+    record.wait_seconds = followed.wait_seconds;
+    if (!followed.ok) {
+      take_back(before);
+      report.trouble = "the torn body is not stable: a part of it can move freely (hold it by another [[support]])";
+      return false;
+    }
+    if (hand_.has_lost_hold(body_)) {
+      hand_.let_go(*response_);
+      report.let_go = true;
+    }
+    hand_.follow(*response_);
+  }
+  cracks_before_.push_back(before);
+
+  watch.restart();
+  make_local_objects();
+  record.local_seconds = watch.seconds();
+
+  record.topology = body_.topology();
+  record.tick = ticks_;
+  record.edges_cut = change.incision.edges_cut;
+  record.tets_removed = static_cast<int>(edit.removed.size());
+  record.tets_frozen = static_cast<int>(edit.frozen.size());
+  record.nodes_moved = static_cast<int>(edit.moved.size());
+  record.nodes_copied = static_cast<int>(edit.copied.size());
+  record.volume_lost = change.incision.volume_lost;
+  record.pieces = pieces_;
+  record.finished = cracks_[change.crack].finished;
+  record.crack_area = crack_area();
+  record.force_after = hand_.force();
+  for (std::size_t k = change.crack; k < cracks_.size(); k = std::max(k + 1, before.size())) {
+    const std::vector<Vec3> front = positions(cracks_[k]);
+    record.front_after.insert(record.front_after.end(), front.begin(), front.end());
+  }
+  advances_.push_back(std::move(record));
+  ++report.advances;
+  if (observer) observer(advances_.back());
+  return true;
+}
+
+void TearSession::apply(mesh::MeshEdit edit) {
+  body_.apply(std::move(edit));
+  follow_nodes();
+  const fracture::Pieces pieces = fracture::find_pieces(body_, held_);
+  std::vector<TetId> loose = fracture::unsupported_tets(body_, pieces);
+  pieces_ = static_cast<int>(pieces.count());
+  if (!loose.empty()) {
+    mesh::MeshEdit whole = body_.undo();
+    whole.frozen = std::move(loose);
+    body_.apply(std::move(whole));
+  }
+  surroundings_.follow(body_.history().back(), body_);
+}
+
+}  // namespace rhexis::session

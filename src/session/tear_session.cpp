@@ -1,0 +1,210 @@
+#include "session/tear_session.h"
+
+#include <algorithm>
+
+#include "fracture/pieces.h"
+#include "mesh/quality.h"
+#include "response/exact_response.h"
+
+namespace rhexis::session {
+namespace {
+
+/// Of the local object where the scene gives none, in mean edge lengths.
+constexpr double kLocalRadius = 4.0;
+
+}  // namespace
+
+TearSession::TearSession(mesh::TetMesh mesh, TearSettings settings)
+    : settings_(std::move(settings)), body_(mesh), surroundings_(mesh), hand_(settings_.contact) {
+  smallest_radius_ratio_ = mesh::measure_quality(mesh).radius_ratio.min;
+  if (settings_.local_radius <= 0.0) settings_.local_radius = kLocalRadius * mean_edge();
+  if (settings_.criterion.empty())
+    settings_.criterion = surroundings_.is_plate() ? "maximum-principal" : "maximum-hoop";
+  held_.assign(3 * mesh.node_count(), 0);
+  for (const model::PrescribedDof& support : settings_.body.supports) held_[static_cast<std::size_t>(support.dof)] = 1;
+  body_force_ = settings_.body.density * settings_.body.gravity;
+  const VectorX& force = settings_.body.dead_force;
+  if (force.size() > 0 && !force.isZero(0.0)) {
+    node_force_.resize(mesh.node_count());
+    for (std::size_t node = 0; node < node_force_.size(); ++node)
+      node_force_[node] = force.segment<3>(3 * static_cast<Eigen::Index>(node));
+  }
+}
+
+Expected<std::unique_ptr<TearSession>> TearSession::make(mesh::TetMesh mesh, TearSettings settings,
+                                                         const std::vector<CrackLine>& cracks) {
+  std::unique_ptr<TearSession> session(new TearSession(std::move(mesh), std::move(settings)));
+  const TearSettings& all = session->settings_;
+  // Where energy decides whether, any positive strength serves to ask for the direction.
+  Expected<std::unique_ptr<fracture::Criterion>> criterion =
+      fracture::make_criterion(all.criterion, {.strength = all.strength.value_or(1.0),
+                                               .advance_threshold = all.strength ? all.advance_threshold : 1.0,
+                                               .ahead_only = all.ahead_only,
+                                               .mean_edge = session->mean_edge()});
+  if (!criterion) return fail(std::move(criterion.error()));
+  session->criterion_ = std::move(*criterion);
+  if (all.toughness && cracks.empty())
+    return fail("a toughness says when a crack runs on, not where one starts", "add a [[crack]], or give a strength");
+  for (const CrackLine& line : cracks)
+    if (Expected<void> done = session->open(line); !done) return fail(std::move(done.error()));
+
+  response::ExactSettings exact;
+  exact.body = all.body;
+  exact.in_background = all.background;
+  session->response_ = response::ExactResponse::make(session->body_, std::move(exact), session->foci());
+  if (!session->response_)
+    return fail("the cracked body is not stable: a part of it can move freely", "hold it by another [[support]]");
+  session->make_local_objects();
+  return session;
+}
+
+Expected<void> TearSession::open(const CrackLine& line) {
+  Expected<fracture::InitialCrack> start = fracture::make_crack(line.from, line.to, line.through, surroundings_);
+  if (!start) return fail(std::move(start.error()));
+  Change change;
+  change.incision = fracture::incise(body_, surroundings_, start->surface, incision_settings());
+  if (change.incision.edit.empty())
+    return fail("the crack cuts no edge of the mesh", "a longer crack, or a finer mesh");
+  change.record.started = true;
+  change.crack = cracks_.size();
+  change.next_cracks = [&] {
+    std::vector<fracture::Crack> next = cracks_;
+    next.insert(next.end(), start->cracks.begin(), start->cracks.end());
+    return next;
+  };
+  TickReport report;
+  take(std::move(change), report, {});
+  return {};
+}
+
+Expected<void> TearSession::grasp(const Vec3& at, response::ContactMode mode) {
+  Expected<void> holds = hand_.grasp(body_, at, mode, *response_);
+  make_local_objects();
+  return holds;
+}
+
+void TearSession::let_go() {
+  hand_.let_go(*response_);
+  make_local_objects();
+}
+
+bool TearSession::undo() {
+  if (cracks_before_.empty()) return false;
+  const mesh::MeshEdit edit = take_back(cracks_before_.back());
+  cracks_before_.pop_back();
+  advances_.pop_back();
+  response_->go_back(edit, foci());
+  hand_.follow(*response_);
+  make_local_objects();
+  return true;
+}
+
+mesh::MeshEdit TearSession::take_back(const std::vector<fracture::Crack>& cracks) {
+  mesh::MeshEdit edit = body_.undo();
+  cracks_ = cracks;
+  reach_.resize(cracks_.size(), 0.0);
+  follow_nodes();
+  pieces_ = static_cast<int>(fracture::find_pieces(body_, held_).count());
+  return edit;
+}
+
+void TearSession::follow_nodes() {
+  const std::size_t nodes = body_.mesh().node_count();
+  const std::size_t known = held_.size() / 3;
+  held_.resize(3 * nodes, 0);
+  for (std::size_t node = known; node < nodes; ++node) {
+    const std::size_t parent = body_.original(NodeId(node)).index();
+    std::copy_n(held_.begin() + static_cast<std::ptrdiff_t>(3 * parent), 3,
+                held_.begin() + static_cast<std::ptrdiff_t>(3 * node));
+  }
+  if (!node_force_.empty()) node_force_.resize(nodes, Vec3::Zero());
+}
+
+void TearSession::make_local_objects() {
+  if (!response_) return;  // the first cracks are still being cut
+  running_.clear();
+  local_.clear();
+  std::vector<std::uint8_t> supported(body_.mesh().node_count());
+  for (std::size_t node = 0; node < supported.size(); ++node)
+    supported[node] = held_[3 * node] | held_[3 * node + 1] | held_[3 * node + 2];
+  for (std::size_t crack = 0; crack < cracks_.size(); ++crack) {
+    if (cracks_[crack].finished) continue;
+    running_.push_back(crack);
+    local_.emplace_back(body_, settings_.body.elastic, surroundings_.tets_near(body_, cracks_[crack], radius_of(crack)),
+                        supported, hand_.nodes(), fracture::LocalLoads{body_force_, node_force_});
+  }
+  solve_local_objects();
+  surface_tets_.clear();
+  if (!running_.empty()) return;
+  for (const mesh::TetFace& face : mesh::solved_surface(body_)) {
+    if (surface_tets_.empty() || surface_tets_.back() != face.tet) surface_tets_.push_back(face.tet);
+  }
+}
+
+void TearSession::solve_local_objects() {
+  VectorX u;
+  for (fracture::LocalObject& local : local_) {
+    if (!local.stable()) continue;
+    response_->displacement(local.boundary(), hand_.nodal_forces(), u);
+    local.solve(u);
+  }
+}
+
+std::vector<fracture::TetStress> TearSession::surface_stresses(const VectorX& u) const {
+  std::vector<std::uint8_t> at_hand(body_.mesh().tet_count(), 0);
+  for (const NodeId node : hand_.nodes()) {
+    for (const TetId tet : body_.tets_around(node)) at_hand[tet.index()] = 1;
+  }
+  std::vector<fracture::TetStress> out;
+  for (const TetId tet : surface_tets_) {
+    out.push_back(fracture::stress_of(body_, settings_.body.elastic, tet, u));
+    out.back().at_hand = at_hand[tet.index()] != 0;
+  }
+  return out;
+}
+
+double TearSession::radius_of(std::size_t crack) const { return std::max(settings_.local_radius, reach_[crack]); }
+
+fracture::IncisionSettings TearSession::incision_settings() const {
+  fracture::IncisionSettings settings;
+  settings.method = settings_.incision;
+  settings.mean_edge = mean_edge();
+  settings.smallest_radius_ratio = smallest_radius_ratio_;
+  settings.immovable.resize(body_.mesh().node_count());
+  for (std::size_t node = 0; node < settings.immovable.size(); ++node)
+    settings.immovable[node] = held_[3 * node] | held_[3 * node + 1] | held_[3 * node + 2];
+  for (const NodeId node : hand_.nodes()) settings.immovable[node.index()] = 1;
+  return settings;
+}
+
+std::vector<response::Focus> TearSession::foci() const {
+  std::vector<response::Focus> out;
+  for (std::size_t crack = 0; crack < cracks_.size(); ++crack) {
+    if (cracks_[crack].finished) continue;
+    const std::vector<fracture::FrontPoint>& front = cracks_[crack].front;
+    response::Focus focus;
+    Vec3 direction = Vec3::Zero();
+    for (const fracture::FrontPoint& point : front) {
+      focus.centre += point.position / static_cast<double>(front.size());
+      direction += point.direction;
+    }
+    if (direction.norm() > 0.0) focus.direction = direction.normalized();
+    for (const fracture::FrontPoint& point : front)
+      focus.half_length = std::max(focus.half_length, (point.position - focus.centre).norm());
+    focus.radius = radius_of(crack);
+    out.push_back(focus);
+  }
+  return out;
+}
+
+double TearSession::crack_area() const {
+  double sum = 0.0;
+  for (const fracture::Crack& crack : cracks_) sum += crack.area;
+  return sum;
+}
+
+double TearSession::stored_energy() { return response_->stored_energy(hand_.nodal_forces()); }
+
+void TearSession::displacement(VectorX& u) { response_->whole_displacement(hand_.nodal_forces(), u); }
+
+}  // namespace rhexis::session

@@ -1,0 +1,128 @@
+#pragma once
+
+/// One interaction with a body that tears, tick by tick: the hand moves, the body answers, and where its stress says so
+/// a crack runs on (sections 2.1 to 2.4 of the method). No clock and no screen: the caller says when a tick is.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "fracture/criterion.h"
+#include "fracture/front_surroundings.h"
+#include "fracture/local_object.h"
+#include "fracture/path.h"
+#include "fracture/path_start.h"
+#include "mesh/torn_mesh.h"
+#include "response/response.h"
+#include "session/advance.h"
+#include "session/hand.h"
+#include "session/tear_settings.h"
+
+namespace rhexis::session {
+
+/// Cracks may run on this often in one tick; what is left goes to the next.
+inline constexpr int kMostAdvancesPerTick = 64;
+
+struct TickReport {
+  Vec3 force = Vec3::Zero();  ///< N, on the hand, after what tore
+  int advances = 0;           ///< made in this tick
+  bool let_go = false;        ///< what was held has come off, or belongs to a piece without support
+  std::string trouble;  ///< empty; else what kept the tick from being finished: the body is as before that advance
+};
+
+class TearSession {
+ public:
+  /// Called after each topology change.
+  using Observer = std::function<void(const AdvanceRecord&)>;
+
+  /// The body under its loads, with its first cracks cut. Errors say what is wrong in the user's words, without a
+  /// place: a crack that misses the body, a body that its cracks leave without support.
+  static Expected<std::unique_ptr<TearSession>> make(mesh::TetMesh mesh, TearSettings settings,
+                                                     const std::vector<CrackLine>& cracks);
+
+  /// Takes hold of the surface point nearest to `at` (m, reference). Errors: as Hand::grasp.
+  Expected<void> grasp(const Vec3& at, response::ContactMode mode = response::ContactMode::hold);
+  void let_go();
+  /// One tick with the hand displaced by `hand` (m) from where it took hold.
+  TickReport tick(const Vec3& hand, const Observer& observer = {});
+  /// The crack runs on by `length` (m) along `direction` (unit, normal to its front), whatever the criterion says: what
+  /// experiments need that prescribe the path. The hand stays where it is. `crack` must not be finished.
+  TickReport impose(std::size_t crack, const Vec3& direction, double length, const Observer& observer = {});
+  /// Takes the last topology change back, the crack with it. False: none is left.
+  bool undo();
+
+  [[nodiscard]] const TearSettings& settings() const { return settings_; }
+  [[nodiscard]] const mesh::TornMesh& body() const { return body_; }
+  [[nodiscard]] const Hand& hand() const { return hand_; }
+  [[nodiscard]] const std::vector<fracture::Crack>& cracks() const { return cracks_; }
+  /// One per crack that still runs.
+  [[nodiscard]] const std::vector<fracture::LocalObject>& local_objects() const { return local_; }
+  [[nodiscard]] const std::vector<AdvanceRecord>& advances() const { return advances_; }
+  [[nodiscard]] int pieces() const { return pieces_; }
+  [[nodiscard]] double mean_edge() const { return surroundings_.mean_edge(); }  ///< m, of the intact body
+  [[nodiscard]] double crack_area() const;                                      ///< m^2
+  [[nodiscard]] double stored_energy();                                         ///< J: Response::stored_energy now
+  [[nodiscard]] std::size_t memory_bytes() const { return response_->memory_bytes(); }
+  /// Of every node, m; zero out of the solve.
+  void displacement(VectorX& u);
+
+ private:
+  TearSession(mesh::TetMesh mesh, TearSettings settings);
+
+  struct Judged {
+    fracture::Advance advance;
+    double value = 0.0;  ///< Pa or N/m
+  };
+  /// A topology change that is about to be made.
+  struct Change {
+    fracture::Incision incision;
+    std::function<std::vector<fracture::Crack>()> next_cracks;  ///< called when the body has taken the incision
+    std::size_t crack = 0;                                      ///< the one that runs on, or the first new one
+    double radius = 0.0;                                        ///< m, how far it runs
+    double seconds = 0.0;                                       ///< spent on planning it
+    AdvanceRecord record;                                       ///< filled in as far as is known
+  };
+  [[nodiscard]] std::optional<Judged> judge(std::size_t crack) const;
+  bool run_on(std::size_t crack, Judged judged, TickReport& report, const Observer& observer);
+  bool start_crack(TickReport& report, const Observer& observer);
+  bool take(Change change, TickReport& report, const Observer& observer);
+
+  Expected<void> open(const CrackLine& line);
+  /// The body takes the edit, with the pieces that it leaves without support frozen.
+  void apply(mesh::MeshEdit edit);
+  /// The body gives its last edit back, with the cracks as they were; the response is not told.
+  mesh::MeshEdit take_back(const std::vector<fracture::Crack>& cracks);
+  void follow_nodes();
+  void make_local_objects();
+  void solve_local_objects();
+  [[nodiscard]] std::vector<fracture::TetStress> surface_stresses(const VectorX& u) const;
+  [[nodiscard]] double radius_of(std::size_t crack) const;
+  [[nodiscard]] fracture::IncisionSettings incision_settings() const;
+  [[nodiscard]] std::vector<response::Focus> foci() const;
+
+  TearSettings settings_;
+  mesh::TornMesh body_;
+  fracture::Surroundings surroundings_;
+  std::unique_ptr<fracture::Criterion> criterion_;
+  std::unique_ptr<response::Response> response_;  ///< made when the first cracks are cut
+  double smallest_radius_ratio_ = 0.0;            ///< of the intact body
+  std::vector<std::uint8_t> held_;                ///< 3 per node, copies too: a support gives this component
+  Vec3 body_force_ = Vec3::Zero();                ///< N/m^3
+  std::vector<Vec3> node_force_;                  ///< N, per node; empty without such loads
+
+  std::vector<fracture::Crack> cracks_;
+  std::vector<std::vector<fracture::Crack>> cracks_before_;  ///< of each topology but the present one
+  std::vector<double> reach_;                                ///< m, length of the last advance of each crack
+  std::vector<std::size_t> running_;                         ///< numbers of the cracks that run
+  std::vector<fracture::LocalObject> local_;                 ///< one for each of those
+  std::vector<TetId> surface_tets_;                          ///< while no crack runs: where one may start
+  std::vector<AdvanceRecord> advances_;
+  int pieces_ = 1;
+  Hand hand_;
+  int ticks_ = 0;
+};
+
+}  // namespace rhexis::session

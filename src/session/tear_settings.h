@@ -1,0 +1,36 @@
+#pragma once
+
+/// What an interaction with a body that tears is told at its start.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/vec.h"
+#include "fracture/incision.h"
+#include "response/contact.h"
+#include "response/elastic_elements.h"
+
+namespace rhexis::session {
+
+struct TearSettings {
+  response::ElasticBody body;
+  std::string criterion;  ///< of fracture::kCriterionNames; empty: "maximum-principal" for a plate, else "maximum-hoop"
+  std::optional<double> strength;   ///< Pa; this or toughness
+  std::optional<double> toughness;  ///< N/m
+  double advance_threshold = 0.0;   ///< Pa, read with strength
+  bool ahead_only = true;
+  double local_radius = 0.0;  ///< m, first and least; 0: four mean edges
+  fracture::IncisionMethod incision = fracture::IncisionMethod::keep_nodes;
+  response::ContactRule contact = response::ContactRule::consistent;
+  bool background = true;  ///< the response may prepare its next window on another thread; the result stays the same
+};
+
+/// A straight crack to start with, through the body.
+struct CrackLine {
+  Vec3 from = Vec3::Zero();  ///< m
+  Vec3 to = Vec3::Zero();    ///< m
+  Vec3 through = Vec3::UnitZ();
+};
+
+}  // namespace rhexis::session

@@ -1,0 +1,265 @@
+#include "session/tear_session.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/parallel.h"
+#include "mesh/generate.h"
+
+namespace rhexis::session {
+namespace {
+
+/// The plate of scenes/plate-tear.toml.
+struct PlateCase {
+  mesh::TetMesh mesh = *mesh::make_plate({Vec3(0.24, 0.24, 0.01)}, 506);
+  TearSettings settings;
+  std::vector<CrackLine> cracks{{Vec3(0.12, 0.0, 0.0), Vec3(0.12, 0.06, 0.0), Vec3::UnitZ()}};
+  Vec3 at{0.10, 0.0, 0.005};
+  Vec3 by{-0.12, 0.0, 0.0};
+
+  explicit PlateCase(const std::string& held = "+x") {
+    settings.body.elastic = {1.0e6, 0.4};
+    for (const NodeId node : mesh.find_node_set(held)->nodes) {
+      for (int c = 0; c < 3; ++c) settings.body.supports.push_back({3 * node.value() + c, 0.0});
+    }
+    settings.criterion = "maximum-principal";
+    settings.strength = 0.4e6;
+    settings.advance_threshold = 0.2e6;
+  }
+  [[nodiscard]] std::unique_ptr<TearSession> make() const {
+    Expected<std::unique_ptr<TearSession>> made = TearSession::make(mesh, settings, cracks);
+    EXPECT_TRUE(made.has_value()) << made.error().message();
+    return std::move(*made);
+  }
+};
+
+struct Trace {
+  std::vector<Vec3> force;         ///< N, per tick
+  std::vector<double> dissipated;  ///< J, work of the hand minus stored energy, per tick
+};
+
+Trace pull(TearSession& tear, const PlateCase& plate, int ticks = 200) {
+  Trace out;
+  EXPECT_TRUE(tear.grasp(plate.at).has_value());
+  for (int k = 1; k <= ticks; ++k) {
+    const TickReport report = tear.tick(plate.by * (static_cast<double>(k) / ticks));
+    EXPECT_EQ(report.trouble, "");
+    out.force.push_back(report.force);
+    out.dissipated.push_back(tear.hand().work() - tear.stored_energy());
+  }
+  return out;
+}
+
+TEST(TearSession, ThePlateTearsAndItsForceDrops) {
+  const PlateCase plate;
+  const auto tear = plate.make();
+  const Trace trace = pull(*tear, plate);
+  ASSERT_GE(tear->advances().size(), 6U);  // the scene's crack, and at least 5 advances
+  EXPECT_TRUE(tear->advances().front().started);
+  for (const AdvanceRecord& advance : tear->advances()) {
+    if (advance.started) continue;
+    // An incision lowers the stiffness: at the same place the hand does less work.
+    EXPECT_LT(advance.force_after.dot(-plate.by), advance.force_before.dot(-plate.by));
+    EXPECT_GE(advance.value, 0.4e6);
+    EXPECT_LE(std::abs(advance.turn), 90.0 + 1e-9);
+    EXPECT_GT(advance.tets_removed, 0);
+    EXPECT_GT(advance.edges_cut, 0);
+  }
+  EXPECT_EQ(tear->body().mesh().node_count(), plate.mesh.node_count());
+  EXPECT_GT(trace.force.front().norm(), 0.0);
+}
+
+TEST(TearSession, TheForceOfAHeldPointGrowsInLineUntilItTears) {
+  const PlateCase plate;
+  const auto tear = plate.make();
+  const Trace trace = pull(*tear, plate);
+  const std::size_t first = static_cast<std::size_t>(tear->advances()[1].tick) - 1;
+  ASSERT_GT(first, 10U);
+  for (std::size_t k = 0; k < first; ++k) {
+    const Vec3 expected = trace.force[0] * static_cast<double>(k + 1);
+    EXPECT_LT((trace.force[k] - expected).norm(), 1e-12 * expected.norm() + 1e-15) << k;
+    // No energy goes anywhere while nothing tears.
+    EXPECT_NEAR(trace.dissipated[k], 0.0, 1e-11 * tear->hand().work()) << k;
+  }
+}
+
+TEST(TearSession, SplitLosesNoVolumeAndNoEnergyComesFromTearing) {
+  PlateCase plate;
+  plate.settings.incision = fracture::IncisionMethod::split;
+  plate.settings.strength = 0.2e6;
+  plate.settings.advance_threshold = 0.15e6;
+  const auto tear = plate.make();
+  const Trace trace = pull(*tear, plate);
+  ASSERT_GE(tear->advances().size(), 3U);
+  EXPECT_GT(tear->body().mesh().node_count(), plate.mesh.node_count());
+  for (const AdvanceRecord& advance : tear->advances()) EXPECT_EQ(advance.tets_removed, 0);
+  // Where no node is moved an incision can only set energy free. Snapping moves some, with the energy of the tets around
+  // them: up to a hundredth of what is stored here.
+  for (std::size_t k = 1; k < trace.dissipated.size(); ++k)
+    EXPECT_GE(trace.dissipated[k], trace.dissipated[k - 1] - 0.01 * tear->hand().work()) << k;
+  EXPECT_GT(trace.dissipated.back(), 0.0);
+}
+
+TEST(TearSession, UndoGivesBackTheForceOfEveryTopology) {
+  const PlateCase plate;
+  const auto tear = plate.make();
+  pull(*tear, plate);
+  while (tear->advances().size() > 1) {
+    const Vec3 before = tear->advances().back().force_before;
+    const std::size_t tick = static_cast<std::size_t>(tear->advances().back().tick);
+    ASSERT_TRUE(tear->undo());
+    // force_before was felt at the hand of that tick; the law is linear in the hand.
+    const Vec3 now =
+        -tear->hand().law().force(tear->hand().law().rest + plate.by * (static_cast<double>(tick) / 200.0));
+    EXPECT_LT((now - before).norm(), 1e-9 * before.norm()) << tear->advances().size();
+  }
+  EXPECT_TRUE(tear->undo());  // the scene's crack
+  EXPECT_FALSE(tear->undo());
+  EXPECT_NEAR(tear->body().volume(), mesh::total_volume(plate.mesh), 1e-18);
+}
+
+TEST(TearSession, AnImposedAdvanceIsTheOneThatTheCriterionWouldMake) {
+  const PlateCase plate;
+  const auto judged = plate.make();
+  pull(*judged, plate, 50);
+  ASSERT_GE(judged->advances().size(), 3U);
+  const auto imposed = plate.make();
+  ASSERT_TRUE(imposed->grasp(plate.at).has_value());
+  for (std::size_t k = 1; k < judged->advances().size(); ++k) {
+    const AdvanceRecord& asked = judged->advances()[k];
+    const Vec3 step = asked.front_after.front() - asked.front_before.front();
+    const TickReport report = imposed->impose(0, step.normalized(), step.norm());
+    EXPECT_EQ(report.trouble, "");
+    EXPECT_EQ(report.advances, 1);
+    const AdvanceRecord& made = imposed->advances()[k];
+    EXPECT_NEAR(made.length, asked.length, 1e-12);
+    EXPECT_NEAR(made.angle, asked.angle, 1e-9);
+    EXPECT_EQ(imposed->body().history().back().removed, judged->body().history()[k].removed);
+  }
+}
+
+/// The mirror image in x, with the numbering kept.
+PlateCase mirrored(PlateCase plate) {
+  const auto flip = [](const Vec3& x) { return Vec3(0.24 - x.x(), x.y(), x.z()); };
+  for (Vec3& node : plate.mesh.nodes) node = flip(node);
+  for (mesh::Tet& tet : plate.mesh.tets) std::swap(tet[2], tet[3]);
+  for (CrackLine& crack : plate.cracks) crack = {flip(crack.from), flip(crack.to), crack.through};
+  plate.at = flip(plate.at);
+  plate.by.x() = -plate.by.x();
+  return plate;
+}
+
+class EveryCriterion : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryCriterion, TheCrackMirrorsWithTheBody) {
+  PlateCase plate;
+  plate.settings.criterion = GetParam();
+  plate.settings.strength = 0.1e6;
+  plate.settings.advance_threshold = 0.05e6;
+  // Off the middle, where no node lies on the crack: one that does belongs to a side by rule, which does not mirror.
+  plate.cracks = {{Vec3(0.1213, 0.0, 0.0), Vec3(0.1207, 0.06, 0.0), Vec3::UnitZ()}};
+  const auto one = plate.make();
+  const PlateCase other_plate = mirrored(plate);
+  const auto other = other_plate.make();
+  const Trace trace = pull(*one, plate, 50);
+  const Trace other_trace = pull(*other, other_plate, 50);
+  ASSERT_EQ(one->advances().size(), other->advances().size());
+  EXPECT_GT(one->advances().size(), 2U);
+  for (std::size_t k = 1; k < one->advances().size(); ++k) {
+    const Vec3& a = one->advances()[k].front_after.front();
+    const Vec3& b = other->advances()[k].front_after.front();
+    // Rounding of the solve, through directions of principal stress, onto lengths of a tenth of a metre.
+    EXPECT_LT((Vec3(0.24 - b.x(), b.y(), b.z()) - a).head<2>().norm(), 1e-9) << k;
+  }
+  for (std::size_t k = 0; k < trace.force.size(); ++k) {
+    const Vec3 back(-other_trace.force[k].x(), other_trace.force[k].y(), other_trace.force[k].z());
+    EXPECT_LT((back - trace.force[k]).norm(), 1e-7) << k;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryCriterion,
+                         testing::Values("maximum-principal", "maximum-shear", "von-mises", "maximum-hoop"),
+                         [](const auto& test) {
+                           std::string name = test.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+TEST(TearSession, TheSameBitsWhateverTheThreads) {
+  const PlateCase plate;
+  std::vector<Trace> traces;
+  for (const int threads : {1, 2, 2}) {
+    set_thread_count(threads);
+    traces.push_back(pull(*plate.make(), plate));
+  }
+  set_thread_count(0);
+  for (std::size_t k = 0; k < traces[0].force.size(); ++k) {
+    EXPECT_EQ(traces[0].force[k], traces[1].force[k]) << k;
+    EXPECT_EQ(traces[0].force[k], traces[2].force[k]) << k;
+  }
+}
+
+TEST(TearSession, GoesOnUntilTheBodyIsInPiecesAndTheHandLetsGo) {
+  PlateCase plate;
+  plate.settings.strength = 0.02e6;
+  plate.settings.advance_threshold = 0.02e6;
+  plate.settings.criterion = "maximum-hoop";
+  const auto tear = plate.make();
+  ASSERT_TRUE(tear->grasp(plate.at).has_value());
+  bool let_go = false;
+  for (int k = 1; k <= 400 && !let_go; ++k) let_go = tear->tick(plate.by * (k / 400.0)).let_go;
+  EXPECT_TRUE(let_go);
+  EXPECT_GE(tear->pieces(), 2);
+  EXPECT_FALSE(tear->hand().holds());
+  EXPECT_EQ(tear->hand().force(), Vec3(0.0, 0.0, 0.0));
+  EXPECT_GT(tear->advances().back().tets_frozen, 0);
+  VectorX u;
+  tear->displacement(u);
+  EXPECT_LT(u.norm(), 1e-12);  // what is left is held, and nothing pulls at it
+}
+
+TEST(TearSession, ABodyWithoutACrackTearsWhereItYields) {
+  PlateCase plate;
+  plate.cracks.clear();
+  plate.settings.strength = 0.05e6;
+  plate.settings.advance_threshold = 0.03e6;
+  const auto tear = plate.make();
+  EXPECT_TRUE(tear->cracks().empty());
+  pull(*tear, plate, 40);
+  ASSERT_FALSE(tear->advances().empty());
+  EXPECT_TRUE(tear->advances().front().started);
+  EXPECT_FALSE(tear->cracks().empty());
+}
+
+TEST(TearSession, ToughnessTearsWhereTheEnergyReleaseReachesIt) {
+  PlateCase plate;
+  plate.settings.strength.reset();
+  plate.settings.toughness = 300.0;
+  plate.settings.criterion = "maximum-hoop";
+  const auto tear = plate.make();
+  pull(*tear, plate);
+  ASSERT_GE(tear->advances().size(), 2U);
+  for (std::size_t k = 1; k < tear->advances().size(); ++k) EXPECT_GE(tear->advances()[k].value, 300.0);
+  // The hand's work is stored or went into the crack: about the toughness times its area. The domain integral at this
+  // mesh, advances of finite length, and what the removed tets take, make the rest.
+  const double per_area = (tear->hand().work() - tear->stored_energy()) / tear->crack_area();
+  EXPECT_GT(per_area, 150.0);
+  EXPECT_LT(per_area, 900.0);
+}
+
+TEST(TearSession, SaysWhatIsWrongWithACrack) {
+  PlateCase plate;
+  plate.cracks = {{Vec3(0.5, 0.0, 0.0), Vec3(0.5, 0.06, 0.0), Vec3::UnitZ()}};
+  EXPECT_FALSE(TearSession::make(plate.mesh, plate.settings, plate.cracks).has_value());
+  plate.cracks.clear();
+  plate.settings.strength.reset();
+  plate.settings.toughness = 100.0;
+  const auto made = TearSession::make(plate.mesh, plate.settings, plate.cracks);
+  ASSERT_FALSE(made.has_value());
+  EXPECT_EQ(made.error().message(),
+            "a toughness says when a crack runs on, not where one starts (add a [[crack]], or give a strength)");
+}
+
+}  // namespace
+}  // namespace rhexis::session
