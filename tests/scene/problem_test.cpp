@@ -13,6 +13,7 @@
 #include "mesh/surface.h"
 #include "model/stabilisation.h"
 #include "scene/problem.h"
+#include "scene/tear_problem.h"
 #include "tests/scene/scene_text.h"
 
 namespace rhexis::scene::test {
@@ -361,7 +362,8 @@ TEST_P(ShippedScene, IsGoodForEveryModel) {
   std::ifstream file(path);
   std::string head(std::istreambuf_iterator<char>(file), {});
   EXPECT_EQ(head[0], '#');
-  EXPECT_THAT(head, HasSubstr("#   rhexis solve scenes/" + GetParam()));
+  const std::string command = is_for_tearing(*scene) ? "tear" : "solve";
+  EXPECT_THAT(head, HasSubstr("#   rhexis " + command + " scenes/" + GetParam()));
 }
 
 std::vector<std::string> shipped() {

@@ -1,0 +1,132 @@
+// rhexis tear from outside: exit codes, streams, files.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/vec.h"
+#include "mesh/io/mesh_file.h"
+#include "tests/support/run_command.h"
+
+namespace rhexis {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+
+test::Ran tear(const std::string& arguments, const fs::path& out) {
+  return test::run_rhexis("tear scenes/plate-tear.toml " + arguments + " --out '" + out.string() + "'");
+}
+
+const mesh::Field& field_of(const mesh::MeshFile& file, const std::string& name) {
+  const auto found =
+      std::find_if(file.fields.begin(), file.fields.end(), [&](const mesh::Field& f) { return f.name == name; });
+  EXPECT_NE(found, file.fields.end()) << name;
+  return *found;
+}
+
+Vec3 vector_of(const json& list) { return {list[0].get<double>(), list[1].get<double>(), list[2].get<double>()}; }
+
+TEST(TearCommand, WritesEveryTopologyTheTraceAndTheSummary) {
+  const fs::path out = test::fresh_folder("tear");
+  const test::Ran ran = tear("", out);
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.out, HasSubstr("advances"));
+
+  const json summary = json::parse(test::slurp(out / "summary.json"));
+  EXPECT_TRUE(summary["converged"]);
+  const json& advances = summary["advances"];
+  ASSERT_GE(advances.size(), 6U);  // the scene's crack and five more
+  for (const json& advance : advances) {
+    for (const char* key : {"length", "angle", "tets_removed", "nodes_moved", "volume_lost", "pieces", "milliseconds",
+                            "front_before", "front_after"})
+      EXPECT_TRUE(advance.contains(key)) << key;
+  }
+  const std::string series = test::slurp(out / "steps.pvd");
+  for (std::size_t topology = 1; topology <= advances.size(); ++topology) {
+    const std::string name = fmt::format("steps/topology_{:04}", topology);
+    EXPECT_TRUE(fs::exists(out / (name + ".vtkhdf"))) << name;
+    EXPECT_TRUE(fs::exists(out / (name + ".vtu"))) << name;
+    EXPECT_THAT(series, HasSubstr(name + ".vtu"));
+  }
+  EXPECT_TRUE(fs::exists(out / "force.svg"));
+  EXPECT_TRUE(fs::exists(out / "result.vtkhdf"));
+
+  std::ifstream trace(out / "force.csv");
+  std::string line;
+  std::getline(trace, line);
+  EXPECT_EQ(line,
+            "time_s,pull_x_m,pull_y_m,pull_z_m,force_x_N,force_y_N,force_z_N,advances,hand_work_J,stored_energy_J,"
+            "crack_area_m2");
+  int ticks = 0;
+  while (std::getline(trace, line)) {
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 10) << line;
+    ++ticks;
+  }
+  EXPECT_EQ(ticks, 2000);  // 2 s in ticks of 1 ms
+}
+
+TEST(TearCommand, ReactionsOfATornBodyBalanceTheHand) {
+  for (const auto& [incision, strength] : {std::pair{"keep-nodes", "0.4e6"}, std::pair{"split", "0.25e6"}}) {
+    const fs::path out = test::fresh_folder(std::string("balance-") + incision);
+    const test::Ran ran =
+        tear(fmt::format("--set fracture.incision={} --set fracture.strength={}", incision, strength), out);
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const json summary = json::parse(test::slurp(out / "summary.json"));
+    const json& last = summary["advances"].back();
+    const Expected<mesh::MeshFile> file =
+        mesh::read_mesh_file(out / fmt::format("steps/topology_{:04}.vtkhdf", last["topology"].get<int>()));
+    ASSERT_TRUE(file) << file.error().message();
+    const mesh::Field& reaction = field_of(*file, "reaction");
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t n = 0; n < reaction.values.size(); n += 3)
+      sum += Vec3(reaction.values[n], reaction.values[n + 1], reaction.values[n + 2]);
+    const Vec3 on_hand = vector_of(last["force_after"]);
+    ASSERT_GT(on_hand.norm(), 0.1);
+    // The body is at rest between its supports and the hand: internal forces cancel to the rounding of the solve.
+    EXPECT_LT((sum - on_hand).norm(), 1e-9 * on_hand.norm()) << incision;
+    const mesh::Field& alive = field_of(*file, "alive");
+    const auto gone = std::count(alive.values.begin(), alive.values.end(), 0.0);
+    int removed = 0;
+    for (const json& advance : summary["advances"]) removed += advance["tets_removed"].get<int>();
+    EXPECT_EQ(gone, removed);
+    EXPECT_EQ(file->mesh.node_count(), summary["nodes"].get<std::size_t>());
+  }
+}
+
+TEST(TearCommand, BadInputIsOneLineAndWritesNothing) {
+  struct Bad {
+    std::string set, says;
+  };
+  for (const Bad& bad :
+       {Bad{"--set model.kind=corotated",
+            "--set model.kind=corotated: a body with model 'corotated' cannot be torn yet"},
+        Bad{"--set pull.0.at=[0.24,0.1,0.005]", "a support holds the point that the hand takes hold of"},
+        Bad{"--set crack.0.from=[0.3,0,0] --set crack.0.to=[0.3,0.06,0]", "crack"},
+        Bad{"--set fracture.advance_threshold=1e6", "'fracture.advance_threshold' is 1000000"},
+        Bad{"--set fracture.criterion=maximum-hop", "maximum-hoop"},
+        Bad{"--set pull.0.seconds=nan", "pull.0.seconds"}}) {
+    const fs::path out = test::fresh_folder("bad") / "out";
+    const test::Ran ran = tear(bad.set, out);
+    EXPECT_EQ(ran.code, 2) << bad.set << '\n' << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr(bad.says)) << bad.set;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+    EXPECT_FALSE(fs::exists(out)) << bad.set;
+  }
+}
+
+TEST(TearCommand, JsonIsAllThatStdoutHolds) {
+  const fs::path out = test::fresh_folder("tear-json");
+  const test::Ran ran = tear("--json --set pull.0.seconds=0.2", out);
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(json::parse(ran.out), json::parse(test::slurp(out / "summary.json")));
+}
+
+}  // namespace
+}  // namespace rhexis
