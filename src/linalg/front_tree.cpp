@@ -13,13 +13,17 @@ namespace {
 
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
-/// The component in the middle of the kept nodes: most of them have their home neither below a child of it, nor above.
-/// Those that are always kept have no place. `otherwise` when there are no others.
-std::int32_t middle_of(const FrontLayout& layout, const std::vector<std::int32_t>& kept, std::int32_t otherwise) {
+/// The component in the middle of what changed, or, where no element did, of the kept nodes: most lies neither below
+/// any one child of it, nor above. Nodes that are always kept have no place. `otherwise` when there is nothing.
+std::int32_t middle_of(const FrontLayout& layout, const std::vector<std::int32_t>& touched,
+                       const std::vector<std::int32_t>& kept, std::int32_t otherwise) {
   const ComponentTree& tree = layout.tree();
   std::vector<std::int32_t> count(at(tree.size()), 0);
-  for (const std::int32_t node : kept) {
-    if (layout.home(node) >= 0) ++count[at(layout.home(node))];
+  for (const std::int32_t component : touched) ++count[at(component)];
+  if (touched.empty()) {
+    for (const std::int32_t node : kept) {
+      if (layout.home(node) >= 0) ++count[at(layout.home(node))];
+    }
   }
   count[at(tree.root())] = 0;
   for (std::int32_t c = 0; c < tree.root(); ++c) count[at(tree.parent[at(c)])] += count[at(c)];
@@ -81,7 +85,7 @@ std::shared_ptr<const FrontTree> FrontTree::updated(const ElementSource& element
   const LayoutChange moves = core->layout.apply(elements, change);
   core->set_kept(change.kept);
   const ComponentTree& tree = core->layout.tree();
-  const std::int32_t last = middle_of(core->layout, core->kept, old.direction.last);
+  const std::int32_t last = middle_of(core->layout, moves.touched, core->kept, old.direction.last);
   core->direction = last == old.direction.last ? old.direction : direct(tree, last);
 
   std::vector<char> marked(core->fronts.size(), 0);
