@@ -107,6 +107,9 @@ void LocalObject::Core::add_loads(const LocalLoads& loads) {
 }
 
 void LocalObject::Core::factor_interior() {
+  std::vector<bool> held(3 * nodes.size(), false);
+  for (const std::int32_t node : boundary_place)
+    for (std::int32_t i = 0; i < 3; ++i) held[static_cast<std::size_t>(3 * node + i)] = true;
   std::vector<std::int32_t> connectivity;
   for (const auto& of_tet : local) connectivity.insert(connectivity.end(), of_tet.begin(), of_tet.end());
   linalg::SymmetricBlockMatrix K(std::make_shared<const linalg::BlockPattern>(
@@ -118,16 +121,14 @@ void LocalObject::Core::factor_interior() {
       for (int b = 0; b < 4; ++b) {
         const std::int32_t row = local[tet][static_cast<std::size_t>(a)];
         const std::int32_t column = local[tet][static_cast<std::size_t>(b)];
-        if (row < column) continue;
+        if (row < column || held[3 * static_cast<std::size_t>(row)] || held[3 * static_cast<std::size_t>(column)])
+          continue;
         const auto at = 9 * static_cast<std::size_t>(K.pattern->find(row, column));
         Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(K.values.data() + at) +=
             element.block<3, 3>(3 * a, 3 * b);
       }
     }
   }
-  std::vector<bool> held(3 * nodes.size(), false);
-  for (const std::int32_t node : boundary_place)
-    for (std::int32_t i = 0; i < 3; ++i) held[static_cast<std::size_t>(3 * node + i)] = true;
   stable = factor.analyse(*K.pattern, linalg::make_free_dofs(held)) == linalg::CholeskyOutcome::ok &&
            factor.factor(K.values) == linalg::CholeskyOutcome::ok && factor.smallest_pivot() > kSmallestPivot;
 }
