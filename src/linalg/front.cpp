@@ -23,7 +23,7 @@ class FrontMaker {
   std::shared_ptr<const Front> make() {
     find_nodes();
     find_dofs();
-    f_.panel = std::make_unique<double[]>(static_cast<std::size_t>(f_.ld()) * static_cast<std::size_t>(f_.pivots));
+    f_.panel = make_zeroed(static_cast<std::size_t>(f_.ld()) * static_cast<std::size_t>(f_.pivots));
     f_.update = LowerTriangle(f_.boundary() + 1);
     diagonal_.assign(f_.dofs.size(), 0.0);
     add_elements();

@@ -37,7 +37,7 @@ struct Front {
   std::int32_t pivots = 0;         ///< dofs of the pivots
   std::vector<Incoming> incoming;
   std::vector<std::int32_t> set_aside;  ///< the component's elements that lie wholly in kept nodes
-  std::unique_ptr<double[]> panel;      ///< L_pp, L_bp, y^T: ld() x pivots; nothing of meaning above the diagonal
+  Zeroed panel;                         ///< L_pp, L_bp, y^T: ld() x pivots; nothing of meaning above the diagonal
   LowerTriangle update;                 ///< U, (f_b - L_bp y)^T, e - y . y
   std::vector<double> assembled;        ///< per boundary dof, what elements have put on its diagonal so far
   double flops = 0.0;

@@ -32,29 +32,33 @@ void subtract_product(double* C, int ldc, const double* A, const double* B, int 
   Matrix(C, rows, columns, Eigen::OuterStride<>(ldc)).noalias() -= a * b.transpose();
 }
 
-/// Few columns: L in place, T = L^-1, and the rows below times T^T, a product where a solve would go column by column.
+using Narrow = Eigen::Matrix<double, kFactorWidth, kFactorWidth>;
+
+/// Few columns: L in place, R = L^-T, and the rows below times R, a product where a solve would go column by column.
+/// On copies of fixed size, whose columns are a few registers; unused rows and columns are those of the identity.
 bool factor_narrow(double* A, int rows, int columns, int ld, double* work) {
-  Matrix L(A, columns, columns, Eigen::OuterStride<>(ld));
+  Matrix given(A, rows, columns, Eigen::OuterStride<>(ld));
+  Narrow L = Narrow::Identity();
+  for (int j = 0; j < columns; ++j) L.col(j).segment(j, columns - j) = given.col(j).segment(j, columns - j);
+  Narrow R = Narrow::Identity();
   for (int j = 0; j < columns; ++j) {
     const double pivot = L(j, j);
     if (!(pivot > 0.0)) return false;  // nor is NaN
-    const int below = columns - j - 1;
-    L.col(j).tail(below + 1) /= std::sqrt(pivot);
-    for (int k = j + 1; k < columns; ++k) L.col(k).tail(columns - k) -= L(k, j) * L.col(j).tail(columns - k);
+    const double scale = 1.0 / std::sqrt(pivot);
+    L.col(j) *= scale;
+    R.col(j) *= scale;
+    for (int k = j + 1; k < columns; ++k) {
+      const double factor = L(k, j);
+      L.col(k) -= factor * L.col(j);
+      R.col(k) -= factor * R.col(j);
+    }
   }
+  for (int j = 0; j < columns; ++j) given.col(j).segment(j, columns - j) = L.col(j).segment(j, columns - j);
   const int below = rows - columns;
   if (below == 0) return true;
-  Eigen::Matrix<double, kFactorWidth, kFactorWidth> T;
-  auto inverse = T.topLeftCorner(columns, columns);
-  inverse.setIdentity();
-  for (int j = 0; j < columns; ++j) {
-    inverse.row(j).head(j + 1) /= L(j, j);
-    for (int k = j + 1; k < columns; ++k) inverse.row(k).head(j + 1) -= L(k, j) * inverse.row(j).head(j + 1);
-  }
-  Matrix B(A + columns, below, columns, Eigen::OuterStride<>(ld));
   Matrix copy(work, below, columns, Eigen::OuterStride<>(below));
-  copy = B;
-  B.noalias() = copy * inverse.transpose();
+  copy = given.bottomRows(below);
+  given.bottomRows(below).noalias() = copy * R.topLeftCorner(columns, columns);
   return true;
 }
 

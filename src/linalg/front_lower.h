@@ -2,24 +2,36 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
+#include <cstdlib>
 #include <memory>
+#include <new>
 
 namespace rhexis::linalg {
+
+struct FreeZeroed {
+  void operator()(double* data) const { std::free(data); }  // NOLINT(cppcoreguidelines-no-malloc)
+};
+using Zeroed = std::unique_ptr<double[], FreeZeroed>;
+
+/// `count` zeros. By calloc: large pieces come from the system as zeros, and are not written twice.
+[[nodiscard]] inline Zeroed make_zeroed(std::size_t count) {
+  Zeroed out(static_cast<double*>(std::calloc(std::max<std::size_t>(count, 1), sizeof(double))));
+  if (out == nullptr) throw std::bad_alloc();
+  return out;
+}
 
 /// The lower triangle of a symmetric matrix, in blocks of whole columns that each start at the diagonal: half the
 /// memory of a square, and BLAS updates it block by block.
 class LowerTriangle {
  public:
-  static constexpr int kBlock = 96;  ///< columns in a block; the last one may have fewer
+  static constexpr int kBlock = 64;  ///< columns in a block; the last one may have fewer
 
   LowerTriangle() = default;
   /// All zero.
   explicit LowerTriangle(int size) : size_(size) {
     std::size_t entries = 0;
     for (int b = 0; b < blocks(); ++b) entries += block_entries(b);
-    data_ = std::make_unique_for_overwrite<double[]>(entries);
-    std::memset(data_.get(), 0, entries * sizeof(double));
+    data_ = make_zeroed(entries);
     entries_ = entries;
   }
 
@@ -51,7 +63,7 @@ class LowerTriangle {
 
   int size_ = 0;
   std::size_t entries_ = 0;
-  std::unique_ptr<double[]> data_;
+  Zeroed data_;
 };
 
 }  // namespace rhexis::linalg
