@@ -151,10 +151,9 @@ void ExactResponse::prepare(std::span<const Focus> focus) {
 /// False, and nothing changes, when the body has a free motion.
 bool ExactResponse::adopt(Halves next) {
   if (!next.is_stable()) return false;
-  std::optional<RimSystem> rim = RimSystem::make(*next.outside, next.inside.get());
-  if (!rim) return false;
+  if (!next_rim_.factor(*next.outside, next.inside.get())) return false;
   halves_ = std::move(next);
-  rim_ = std::move(*rim);
+  std::swap(rim_, next_rim_);
   held_ = solve_held_nodes(mesh_, model_, halves_, rim_, held_.nodes, held_);
   return true;
 }
@@ -227,7 +226,8 @@ double ExactResponse::stored_energy(const VectorX& held_forces) {
 }
 
 std::size_t ExactResponse::memory_bytes() const {
-  std::size_t bytes = halves_.outside->memory_bytes() + rim_.memory_bytes() + halves_.window->memory_bytes();
+  std::size_t bytes =
+      halves_.outside->memory_bytes() + rim_.memory_bytes() + next_rim_.memory_bytes() + halves_.window->memory_bytes();
   if (halves_.inside) bytes += halves_.inside->memory_bytes();
   for (const linalg::FrontTree::Forward* forward : {&held_.outside, &held_.inside}) {
     for (const Eigen::MatrixXd& y : forward->y) bytes += sizeof(double) * static_cast<std::size_t>(y.size());

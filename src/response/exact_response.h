@@ -69,6 +69,7 @@ class ExactResponse final : public Response {
   ElasticModel model_;
   Halves halves_;
   RimSystem rim_;
+  RimSystem next_rim_;  ///< of the version before, whose memory the next one takes
   HeldNodes held_;
   double energy_at_first_ = 0.0;
   VectorX x_inside_, x_outside_;              ///< work: the last solution in either half

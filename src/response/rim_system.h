@@ -2,7 +2,6 @@
 
 /// What is left when everything but the rim has been eliminated: S = S_outside + S_inside on the rim's dofs, factored.
 
-#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -11,11 +10,12 @@
 
 namespace rhexis::response {
 
+/// Empty until `factor`, which may be called again and takes no new memory then for a rim of the same size.
 class RimSystem {
  public:
-  /// `inside` may be null: there is no rim then, and all that follows is empty. nullopt: S is not positive definite,
-  /// the body has a free motion.
-  [[nodiscard]] static std::optional<RimSystem> make(const linalg::FrontTree& outside, const linalg::FrontTree* inside);
+  /// `inside` may be null: there is no rim then, and all that follows is empty. False: S is not positive definite, the
+  /// body has a free motion, and this is of no use until the next.
+  [[nodiscard]] bool factor(const linalg::FrontTree& outside, const linalg::FrontTree* inside);
 
   /// Dofs of the rim that are in the assembly, ascending.
   [[nodiscard]] const std::vector<std::int32_t>& dofs() const { return dofs_; }
@@ -38,10 +38,11 @@ class RimSystem {
 
  private:
   std::vector<std::int32_t> dofs_;
-  std::vector<Eigen::Index> outside_;  ///< per kept dof of that tree, its place in dofs_
-  std::vector<Eigen::Index> inside_;
+  std::vector<int> outside_;  ///< per kept dof of that tree, its place in dofs_
+  std::vector<int> inside_;
   Eigen::MatrixXd L_;  ///< lower triangle of the factor; what is above is not read
   VectorX load_;
+  std::vector<double> work_;
 };
 
 }  // namespace rhexis::response
