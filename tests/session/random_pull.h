@@ -54,10 +54,15 @@ class RandomPull {
     return from + (to - from) * static_cast<double>(random_() >> 11) * 0x1.0p-53;  // the same on every machine
   }
   std::size_t choose(std::size_t count) { return static_cast<std::size_t>(random_() % count); }
-  Vec3 direction() {
+  /// One draw after the other: the order of arguments is the compiler's.
+  Vec3 vector(double from, double to) {
     Vec3 v;
-    do v = Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
-    while (v.norm() > 1.0 || v.norm() < 0.1);
+    for (int c = 0; c < 3; ++c) v[c] = uniform(from, to);
+    return v;
+  }
+  Vec3 direction() {
+    Vec3 v = vector(-1, 1);
+    while (v.norm() > 1.0 || v.norm() < 0.1) v = vector(-1, 1);
     return v.normalized();
   }
 
@@ -71,17 +76,19 @@ class RandomPull {
         plate_ = true;
         break;
       case 1:
-        mesh_ = *mesh::make_bar({Vec3(0.04, 0.01, 0.01)}, static_cast<int>(500 + choose(1000)));
+        mesh_ = *mesh::make_bar({Vec3(0.04, 0.01, 0.01)}, 500 + static_cast<int>(choose(1000)));
         sides = {"-x", "+x"};
         break;
       case 2:
         mesh_ = *mesh::make_tube({.radius = 0.005, .length = 0.04}, static_cast<int>(600 + choose(900)));
         sides = {"bottom", "top"};
         break;
-      default:
-        mesh_ = *mesh::make_tube({.radius = 0.005, .length = 0.03, .wall = 0.0015, .bend = uniform(0.0, 60.0)},
+      default: {
+        const double bend = uniform(0.0, 60.0);
+        mesh_ = *mesh::make_tube({.radius = 0.005, .length = 0.03, .wall = 0.0015, .bend = bend},
                                  static_cast<int>(1500 + choose(1500)));
         sides = {"bottom", "top"};
+      }
     }
     box_ = mesh::bounding_box(mesh_);
     std::vector<std::uint8_t> held(mesh_.node_count(), 0);
@@ -114,11 +121,12 @@ class RandomPull {
     if (plate_) {
       // From the middle of an edge inward, at a slant.
       const Vec3 from(uniform(0.2, 0.8) * size.x(), 0.0, 0.0);
-      const Vec3 to = from + Vec3(uniform(-0.03, 0.03), uniform(0.02, 0.08), 0.0);
+      const double aside = uniform(-0.03, 0.03);
+      const Vec3 to = from + Vec3(aside, uniform(0.02, 0.08), 0.0);
       return {{from, to, Vec3::UnitZ()}};
     }
     if (uniform(0, 1) < 0.3) return {};  // starts where it yields
-    const Vec3 inside = box_.from + Vec3(uniform(0.3, 0.7), uniform(0.3, 0.7), uniform(0.3, 0.7)).cwiseProduct(size);
+    const Vec3 inside = box_.from + vector(0.3, 0.7).cwiseProduct(size);
     Vec3 way = direction();
     Vec3 through = direction();
     through = (through - through.dot(way) * way).normalized();
@@ -126,11 +134,12 @@ class RandomPull {
   }
 
   void pull(PullTally& tally, double check_share) {
-    const Vec3 at = box_.from + Vec3(uniform(0, 1), uniform(0, 1), uniform(0, 1)).cwiseProduct(box_.size());
+    const Vec3 at = box_.from + vector(0, 1).cwiseProduct(box_.size());
     const auto mode = uniform(0, 1) < 0.85 ? response::ContactMode::hold : response::ContactMode::push;
     if (!tear_->grasp(at, mode)) return;  // a support holds that point
     const Mat3 stiffness = tear_->hand().law().stiffness;
-    const Vec3 by = uniform(0.3, 1.5) * box_.size().maxCoeff() * direction();
+    const double way = uniform(0.3, 1.5) * box_.size().maxCoeff();
+    const Vec3 by = way * direction();
     constexpr int kTicks = 40;
     int advances = 0;
     bool apart = false;
@@ -140,7 +149,7 @@ class RandomPull {
         ++advances;
         check_edit(tally);
         EXPECT_TRUE(advance.force_after.allFinite()) << "seed " << seed_;
-        if (tear_->hand().holds() && uniform(0, 1) < check_share) check_response(stiffness, by.norm(), tally);
+        if (tear_->hand().holds() && uniform(0, 1) < check_share) check_response(stiffness, way, tally);
       });
       EXPECT_EQ(report.trouble, "") << "seed " << seed_ << " tick " << k;
       EXPECT_TRUE(report.force.allFinite()) << "seed " << seed_;

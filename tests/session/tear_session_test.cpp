@@ -94,8 +94,8 @@ TEST(TearSession, SplitLosesNoVolumeAndNoEnergyComesFromTearing) {
   ASSERT_GE(tear->advances().size(), 3U);
   EXPECT_GT(tear->body().mesh().node_count(), plate.mesh.node_count());
   for (const AdvanceRecord& advance : tear->advances()) EXPECT_EQ(advance.tets_removed, 0);
-  // Where no node is moved an incision can only set energy free. Snapping moves some, with the energy of the tets around
-  // them: up to a hundredth of what is stored here.
+  // Where no node is moved an incision can only set energy free. Snapping moves some, with the energy of the tets
+  // around them: up to a hundredth of what is stored here.
   for (std::size_t k = 1; k < trace.dissipated.size(); ++k)
     EXPECT_GE(trace.dissipated[k], trace.dissipated[k - 1] - 0.01 * tear->hand().work()) << k;
   EXPECT_GT(trace.dissipated.back(), 0.0);
@@ -246,6 +246,33 @@ TEST(TearSession, ToughnessTearsWhereTheEnergyReleaseReachesIt) {
   const double per_area = (tear->hand().work() - tear->stored_energy()) / tear->crack_area();
   EXPECT_GT(per_area, 150.0);
   EXPECT_LT(per_area, 900.0);
+}
+
+TEST(TearSession, APushedPointFeelsPressureAndNoFriction) {
+  PlateCase plate;
+  plate.settings.strength = 1.0e12;
+  const auto tear = plate.make();
+  ASSERT_TRUE(tear->grasp(Vec3(0.06, 0.12, 0.01), response::ContactMode::push).has_value());
+  const Vec3 in = tear->tick(Vec3(0.0, 0.0, -1e-3)).force;
+  EXPECT_GT(in.z(), 0.0);
+  EXPECT_LT(in.head<2>().norm(), 1e-12 * in.norm());
+  const Vec3 aslant = tear->tick(Vec3(2e-3, -1e-3, -1e-3)).force;
+  EXPECT_LT((aslant - in).norm(), 1e-9 * in.norm());  // sliding along changes nothing
+  EXPECT_EQ(tear->tick(Vec3(0.0, 0.0, 1e-3)).force, Vec3(0.0, 0.0, 0.0));
+  // Back where it began, all work has been given back.
+  tear->tick(Vec3::Zero());
+  EXPECT_NEAR(tear->stored_energy(), 0.0, 1e-15);
+}
+
+TEST(TearSession, AHeldPointThatASupportHoldsIsRefused) {
+  const PlateCase plate;
+  const auto tear = plate.make();
+  const Expected<void> held = tear->grasp(Vec3(0.24, 0.1, 0.005));
+  ASSERT_FALSE(held.has_value());
+  EXPECT_EQ(held.error().message(),
+            "a support holds the point that the hand takes hold of (a point away from every [[support]])");
+  EXPECT_FALSE(tear->hand().holds());
+  EXPECT_TRUE(tear->grasp(plate.at).has_value());
 }
 
 TEST(TearSession, SaysWhatIsWrongWithACrack) {
