@@ -31,7 +31,7 @@ struct Crack {
 /// little beyond the body where the front ends on its surface, so that every edge there is met.
 struct CutSurface {
   struct Triangle {
-    Vec3 a, b, c;  ///< m; normal (b - a) x (c - a)
+    Vec3 a, b, c;  ///< m; normal (b - a) x (c - a); `a` is on the front before, if any
   };
   std::vector<Triangle> triangles;
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <utility>
 
 namespace rhexis::fracture {
 namespace {
@@ -15,23 +14,39 @@ void sort_unique(std::vector<T>& items) {
 
 }  // namespace
 
-std::vector<CrossedEdge> crossed_edges(const mesh::TornMesh& body, const NodeMoves& moves, const CutGeometry& surface,
-                                       std::span<const TetId> near) {
-  std::vector<std::pair<NodeId, NodeId>> edges;
-  for (const TetId tet : near) {
-    if (!body.is_solved(tet)) continue;
+std::vector<TetId> tets_near(const mesh::TornMesh& body, const Surroundings& surroundings, const CutGeometry& surface,
+                             const mesh::BoundingBox& within) {
+  const Vec3 margin = Vec3::Constant(surface.on_plane());
+  std::vector<TetId> near;
+  for (const CutTriangle& triangle : surface.triangles()) {
+    const Vec3 from = within.from.cwiseMax(triangle.box.from - margin);
+    const Vec3 to = within.to.cwiseMin(triangle.box.to + margin);
+    if ((from.array() > to.array()).any()) continue;
+    const std::vector<TetId> some = surroundings.tets_meeting(body, from, to);
+    near.insert(near.end(), some.begin(), some.end());
+  }
+  sort_unique(near);
+  return near;
+}
+
+std::vector<Edge> edges_of(const mesh::TornMesh& body, std::span<const TetId> tets) {
+  std::vector<Edge> edges;
+  edges.reserve(6 * tets.size());
+  for (const TetId tet : tets) {
     const mesh::Tet& nodes = body.mesh().tet(tet);
     for (const auto& [i, j] : mesh::kTetEdges)
       edges.push_back(std::minmax(nodes[static_cast<std::size_t>(i)], nodes[static_cast<std::size_t>(j)]));
   }
   sort_unique(edges);
+  return edges;
+}
 
+std::vector<CrossedEdge> crossed_edges(const NodeMoves& moves, const CutGeometry& surface,
+                                       std::span<const Edge> edges) {
   std::vector<CrossedEdge> crossed;
-  for (const auto& [a, b] : edges) {
-    const auto crossing = surface.crossing(moves.position(a), moves.position(b));
-    if (!crossing) continue;
-    crossed.push_back({crossing->a_above ? a : b, crossing->a_above ? b : a, crossing->triangle, crossing->at});
-  }
+  for (const auto& [a, b] : edges)
+    if (const auto crossing = surface.crossing(moves.position(a), moves.position(b)))
+      crossed.push_back({crossing->a_above ? a : b, crossing->a_above ? b : a, crossing->triangle, crossing->at});
   return crossed;
 }
 

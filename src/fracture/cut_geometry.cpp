@@ -19,6 +19,10 @@ bool overlap(const mesh::BoundingBox& box, const Vec3& from, const Vec3& to) {
   return (box.from.array() <= to.array()).all() && (from.array() <= box.to.array()).all();
 }
 
+double squared_distance(const mesh::BoundingBox& box, const Vec3& at) {
+  return (at - at.cwiseMax(box.from).cwiseMin(box.to)).squaredNorm();
+}
+
 }  // namespace
 
 Vec3 CutTriangle::nearest(const Vec3& at) const {
@@ -53,24 +57,37 @@ void CutGeometry::add(const std::array<Vec3, 3>& corner) {
   triangles_.push_back({corner, normal / twice_area, {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)}});
 }
 
-CutGeometry CutGeometry::behind(std::span<const mesh::MeshEdit> history, double reach) const {
+CutGeometry CutGeometry::behind(std::span<const mesh::MeshEdit> history, double reach, double gap) const {
   CutGeometry found({}, on_plane_);
-  if (triangles_.empty()) return found;
-  mesh::BoundingBox box = triangles_.front().box;
-  for (const CutTriangle& triangle : triangles_)
-    box = {box.from.cwiseMin(triangle.box.from), box.to.cwiseMax(triangle.box.to)};
-  const Vec3 wide = Vec3::Constant(reach);
-  for (const mesh::MeshEdit& edit : history)
-    for (const auto& [a, b, c] : edit.swept) {
-      if (!overlap(box, a.cwiseMin(b).cwiseMin(c) - wide, a.cwiseMax(b).cwiseMax(c) + wide)) continue;
-      const bool turned = (b - a).cross(c - a).dot(facing((a + b + c) / 3.0).normal) < 0.0;
-      found.add(turned ? std::array{a, c, b} : std::array{a, b, c});
-    }
+  std::vector<Vec3> starts;
+  for (const CutTriangle& triangle : triangles_) starts.push_back(triangle.corner[0]);
+  const mesh::BoundingBox wide = box(reach);
+  for (auto edit = history.rbegin(); edit != history.rend(); ++edit) {
+    CutGeometry part({}, on_plane_);
+    for (const std::array<Vec3, 3>& corner : edit->swept) part.add(corner);
+    std::erase_if(part.triangles_,
+                  [&](const CutTriangle& triangle) { return !overlap(wide, triangle.box.from, triangle.box.to); });
+    const bool leads_here = std::any_of(starts.begin(), starts.end(), [&](const Vec3& start) {
+      return std::any_of(part.triangles_.begin(), part.triangles_.end(), [&](const CutTriangle& triangle) {
+        return (triangle.nearest(start) - start).squaredNorm() <= gap * gap;
+      });
+    });
+    if (!leads_here) continue;
+    found.join(part);
+    for (const CutTriangle& triangle : part.triangles_) starts.push_back(triangle.corner[0]);
+  }
   return found;
 }
 
 void CutGeometry::join(const CutGeometry& other) {
   triangles_.insert(triangles_.end(), other.triangles_.begin(), other.triangles_.end());
+}
+
+mesh::BoundingBox CutGeometry::box(double margin) const {
+  mesh::BoundingBox box = triangles_.front().box;
+  for (const CutTriangle& triangle : triangles_)
+    box = {box.from.cwiseMin(triangle.box.from), box.to.cwiseMax(triangle.box.to)};
+  return {box.from - Vec3::Constant(margin), box.to + Vec3::Constant(margin)};
 }
 
 std::vector<std::array<Vec3, 3>> CutGeometry::corners() const {
@@ -107,8 +124,10 @@ const CutTriangle& CutGeometry::facing(const Vec3& at) const {
   double least = std::numeric_limits<double>::infinity();
   double steepest = 0.0;
   for (const CutTriangle& triangle : triangles_) {
+    const double limit = least + on_plane_;
+    if (squared_distance(triangle.box, at) > limit * limit) continue;
     const double distance = (triangle.nearest(at) - at).norm();
-    if (distance > least + on_plane_) continue;
+    if (distance > limit) continue;
     const double height = std::abs(triangle.height(at));
     if (distance < least - on_plane_ || height > steepest) {
       best = &triangle;
@@ -121,7 +140,8 @@ const CutTriangle& CutGeometry::facing(const Vec3& at) const {
 
 bool CutGeometry::is_on(const Vec3& at) const {
   return std::any_of(triangles_.begin(), triangles_.end(), [&](const CutTriangle& triangle) {
-    return (triangle.nearest(at) - at).squaredNorm() <= on_plane_ * on_plane_;
+    return squared_distance(triangle.box, at) <= on_plane_ * on_plane_ &&
+           (triangle.nearest(at) - at).squaredNorm() <= on_plane_ * on_plane_;
   });
 }
 

@@ -30,13 +30,16 @@ class CutGeometry {
   /// (or whose area is not a number) are left out.
   CutGeometry(std::span<const CutSurface::Triangle> triangles, double on_plane);
 
-  /// What earlier edits swept within `reach` (m) of this surface, turned so that above is on the same side.
-  [[nodiscard]] CutGeometry behind(std::span<const mesh::MeshEdit> history, double reach) const;
+  /// The crack that leads to this surface: what earlier edits swept within `reach` (m) of it, and from where it or one
+  /// of those starts no further than `gap` (m). Not other cracks: what is above those may be below this one.
+  [[nodiscard]] CutGeometry behind(std::span<const mesh::MeshEdit> history, double reach, double gap) const;
   /// Adds the triangles of the other, behind its own.
   void join(const CutGeometry& other);
 
   [[nodiscard]] const std::vector<CutTriangle>& triangles() const { return triangles_; }
   [[nodiscard]] double on_plane() const { return on_plane_; }
+  /// Around all triangles, wider by `margin` (m) on each side. There must be one.
+  [[nodiscard]] mesh::BoundingBox box(double margin) const;
   /// What MeshEdit::swept takes.
   [[nodiscard]] std::vector<std::array<Vec3, 3>> corners() const;
 

@@ -49,9 +49,10 @@ std::vector<Projection> projections(const CutGeometry& surface, std::span<const 
 
 }  // namespace
 
-Incision incise_keeping_nodes(const mesh::TornMesh& body, const CutGeometry& surface, const IncisionSettings& settings,
-                              std::span<const TetId> near) {
-  const std::vector<CrossedEdge> edges = crossed_edges(body, NodeMoves(body, {}, settings), surface, near);
+Incision incise_keeping_nodes(const mesh::TornMesh& body, const Surroundings& surroundings, const CutGeometry& surface,
+                              const IncisionSettings& settings) {
+  const std::vector<TetId> near = tets_near(body, surroundings, surface, surface.box(surface.on_plane()));
+  const std::vector<CrossedEdge> edges = crossed_edges(NodeMoves(body, {}, settings), surface, edges_of(body, near));
 
   Incision incision;
   incision.edges_cut = static_cast<int>(edges.size());

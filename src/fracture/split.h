@@ -1,7 +1,5 @@
 #pragma once
 
-#include <span>
-
 #include "fracture/cut_geometry.h"
 #include "fracture/incision.h"
 
@@ -11,8 +9,8 @@ namespace rhexis::fracture {
 /// behind it still hang together at their nodes, and come apart when the crack has gone past these.
 inline constexpr double kJoinReach = 2.0;
 
-/// The incision that keeps the volume: see incise. `near`: tets within kJoinReach of the surface, ascending.
-[[nodiscard]] Incision incise_splitting(const mesh::TornMesh& body, const CutGeometry& surface,
-                                        const IncisionSettings& settings, std::span<const TetId> near);
+/// The incision that keeps the volume: see incise.
+[[nodiscard]] Incision incise_splitting(const mesh::TornMesh& body, const Surroundings& surroundings,
+                                        const CutGeometry& surface, const IncisionSettings& settings);
 
 }  // namespace rhexis::fracture
