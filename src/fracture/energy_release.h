@@ -24,7 +24,7 @@ inline constexpr double kInnerEdges = 1.0;
 inline constexpr double kOuterEdges = 3.0;
 
 /// N/m, one per front_sections() of the crack: a plate's line as a whole, else per point, with q falling to 0 along the
-/// front at the neighbours. `tets` and `gradients` (grad u) as of a local object that holds every tet with a corner
+/// front two points further on. `tets` and `gradients` (grad u) as of a local object that holds every tet with a corner
 /// within `outer` of the front. `body_force` N/m^3.
 [[nodiscard]] std::vector<double> energy_release(const mesh::TornMesh& body, const material::Elastic& elastic,
                                                  const Crack& crack, std::span<const TetId> tets,

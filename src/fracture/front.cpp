@@ -6,18 +6,19 @@
 namespace rhexis::fracture {
 namespace {
 
-/// How far a front goes straight on to reach the surface, in mean edges.
+/// How far beyond its step the end of a front goes straight on to reach the surface, in mean edges.
 constexpr double kStraightOn = 2.0;
 /// Ends of neighbouring stretches are the same below this part of a segment.
 constexpr double kSamePlace = 1e-6;
 
-/// Where the moved end is to be; `inner` its neighbour.
-Vec3 end_at_surface(const Vec3& end, const Vec3& inner, const Surroundings& surroundings) {
-  const Vec3 straight = kStraightOn * surroundings.mean_edge() * (end - inner).normalized();
+/// Where a moved end is to be; `inner` its neighbour. An end that has come out into a hole goes on to the far side of
+/// what is beyond it: a front is as long as the body is there.
+Vec3 end_at_surface(const Vec3& end, const Vec3& inner, double reach, const Surroundings& surroundings) {
+  const Vec3 straight = reach * (end - inner).normalized();
   const auto parts = surroundings.inside(end, end + straight);
-  if (parts.empty() || parts.front().from > kSamePlace) return end;  // outside already
+  if (parts.empty()) return end;  // outside, and nothing follows
   if (parts.front().to < 1.0 - kSamePlace) return end + parts.front().to * straight;
-  return surroundings.nearest_on_surface(end);
+  return parts.front().from < kSamePlace ? surroundings.nearest_on_surface(end) : end;
 }
 
 FrontPoint between(const FrontPoint& a, const FrontPoint& b, double part) {
@@ -75,12 +76,16 @@ double length_of(const std::vector<FrontPoint>& line) {
 }  // namespace
 
 void end_on_surface(const Crack& crack, std::vector<Vec3>& step, const Surroundings& surroundings) {
+  const auto settle_end = [&](std::size_t end, std::size_t inner) {
+    const double reach = kStraightOn * surroundings.mean_edge() + step[end].norm();
+    const Vec3 at = crack.front[end].position + step[end];
+    return Vec3(end_at_surface(at, crack.front[inner].position + step[inner], reach, surroundings) -
+                crack.front[end].position);
+  };
   const std::size_t last = crack.front.size() - 1;
-  const auto moved = [&](std::size_t i) { return Vec3(crack.front[i].position + step[i]); };
-  const Vec3 first_at = end_at_surface(moved(0), moved(1), surroundings);
-  const Vec3 last_at = end_at_surface(moved(last), moved(last - 1), surroundings);
-  step[0] = first_at - crack.front[0].position;
-  step[last] = last_at - crack.front[last].position;
+  const Vec3 first_step = settle_end(0, 1);  // both from the front as it was: with two points each is the other's
+  step[last] = settle_end(last, last - 1);
+  step[0] = first_step;
 }
 
 std::vector<Crack> settle(const std::vector<FrontPoint>& front, const Surroundings& surroundings) {

@@ -11,24 +11,33 @@ namespace {
 
 /// A segment of a front that has moved keeps at least this part of its length, along itself.
 constexpr double kLeastSegment = 0.25;
-/// Smoothing ends here with one step for all points.
+/// Cosine of the largest angle between neighbouring segments of a front.
+constexpr double kSharpestCorner = 0.5;
+/// Steps are smoothed at least once, since neighbouring points see much the same tets and differ by their scatter ...
+constexpr int kLeastSmoothings = 1;
+/// ... and at most this often: then all take one step.
 constexpr int kMostSmoothings = 50;
 /// The crack goes on while a tet in the solve lies this far ahead of its front, in mean edges.
 constexpr double kAheadEdges = 2.0;
 
+double cosine(const Vec3& a, const Vec3& b) { return a.dot(b) / std::sqrt(a.squaredNorm() * b.squaredNorm()); }
+
+/// No segment of the moved front turns back or shrinks to nothing, no corner comes to be sharp that was not so before.
 bool is_regular(const std::vector<FrontPoint>& front, const std::vector<Vec3>& step) {
+  const auto before = [&](std::size_t i) { return Vec3(front[i + 1].position - front[i].position); };
+  const auto after = [&](std::size_t i) { return Vec3(before(i) + step[i + 1] - step[i]); };
   for (std::size_t i = 0; i + 1 < front.size(); ++i) {
-    const Vec3 before = front[i + 1].position - front[i].position;
-    const Vec3 after = before + step[i + 1] - step[i];
-    if (after.dot(before) < kLeastSegment * before.squaredNorm()) return false;
+    if (after(i).dot(before(i)) < kLeastSegment * before(i).squaredNorm()) return false;
+    if (i > 0 && cosine(after(i - 1), after(i)) < std::min(kSharpestCorner, cosine(before(i - 1), before(i))))
+      return false;
   }
   return true;
 }
 
-/// Moves each step towards the mean of its neighbours until no segment of the moved front turns back.
+/// Moves each step towards the mean of its neighbours until the moved front is regular.
 void smooth(const std::vector<FrontPoint>& front, std::vector<Vec3>& step) {
   for (int pass = 0; pass < kMostSmoothings; ++pass) {
-    if (is_regular(front, step)) return;
+    if (pass >= kLeastSmoothings && is_regular(front, step)) return;
     const std::vector<Vec3> old = step;
     for (std::size_t i = 0; i < step.size(); ++i) {
       const Vec3& left = old[i == 0 ? 0 : i - 1];
@@ -98,8 +107,8 @@ double share_inside(const Vec3& a, const Vec3& b, const Surroundings& surroundin
   return sum;
 }
 
-/// Of the swept surface inside the body, m^2: by strips between neighbouring points, each weighted by what its two
-/// sides have inside.
+/// Of the swept surface inside the body, m^2: by strips between neighbouring points, each weighted by what its middle
+/// has inside; its sides may run along the surface of the body, where inside is a matter of rounding.
 double swept_area(const Crack& crack, const Advance& advance, const Surroundings& surroundings) {
   double area = 0.0;
   for (std::size_t i = 0; i + 1 < crack.front.size(); ++i) {
@@ -108,7 +117,7 @@ double swept_area(const Crack& crack, const Advance& advance, const Surroundings
     const Vec3 a_after = a + advance.step[i];
     const Vec3 b_after = b + advance.step[i + 1];
     const double strip = 0.5 * ((b - a).cross(a_after - a).norm() + (b_after - b).cross(b_after - a_after).norm());
-    area += strip * 0.5 * (share_inside(a, a_after, surroundings) + share_inside(b, b_after, surroundings));
+    area += strip * share_inside(0.5 * (a + b), 0.5 * (a_after + b_after), surroundings);
   }
   return area;
 }

@@ -33,7 +33,8 @@ struct Advance {
 
 /// Empty when the criterion is met at no point. A plate goes one way by one length. Elsewhere each met point takes its
 /// own step and the others none; the steps are smoothed along the front as far as it takes to keep the front regular
-/// (no segment turns back or falls below a quarter of its length), and its ends go on to the surface. `judgements`: of
+/// (no segment turns back or falls below a quarter of its length, no corner becomes sharper than 60 degrees), and its
+/// ends go on to the surface. `judgements`: of
 /// judge_front.
 [[nodiscard]] std::optional<Advance> plan_advance(const Crack& crack, std::span<const Judgement> judgements,
                                                   const Surroundings& surroundings);
