@@ -1,11 +1,10 @@
 #include "linalg/front.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
-#include "base/check.h"
 #include "base/parallel.h"
+#include "linalg/front_factor.h"
 #include "linalg/front_kernels.h"
 
 namespace rhexis::linalg {
@@ -29,7 +28,7 @@ class FrontMaker {
     add_elements();
     add_node_loads();
     for (const auto& [component, before] : in_.before) add_update(component, *before);
-    factor();
+    eliminate_pivots(f_, diagonal_, in_.null_pivot, in_.may_fork);
     f_.assembled.assign(diagonal_.begin() + f_.pivots, diagonal_.end());
     return front_;
   }
@@ -41,8 +40,7 @@ class FrontMaker {
   void add_node_loads();
   void add_update(std::int32_t component, const Front& before);
   [[nodiscard]] std::vector<Run> find_runs(const Front& before) const;
-  void factor();
-  void subtract_squares();
+  void add_columns(const Front& before, std::span<const Run> runs, std::int32_t begin, std::int32_t end);
   [[nodiscard]] std::int32_t first_dof(NodeKey key) const;
   [[nodiscard]] double& panel(std::int32_t row, std::int32_t column) {
     return f_
@@ -170,65 +168,47 @@ std::vector<Run> FrontMaker::find_runs(const Front& before) const {
   return runs;
 }
 
-/// Extend-add. What a front hands on is ordered as here, but for the nodes that became pivots or have ceased to be kept
-/// in between, so that an entry below the diagonal may come to lie above it only between a boundary and a pivot row.
+/// Extend-add. Each entry of what is handed on has a place of its own here, so that columns are added at once.
 void FrontMaker::add_update(std::int32_t component, const Front& before) {
   std::vector<Run> runs = find_runs(before);
-  const LowerTriangle& U = before.update;
-  const FrontKernels& kernels = front_kernels();
-  const std::int32_t p = f_.pivots;
   const std::int32_t load = before.boundary();
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    for (std::int32_t t = 0; t < runs[r].length; ++t) {
-      const double* const column = U.column(runs[r].from + t);
-      const std::int32_t j = runs[r].to + t;
-      double* const to = j < p ? &panel(0, j) : f_.update.column(j - p) - p;
-      for (std::size_t s = r; s < runs.size(); ++s) {
-        const std::int32_t skip = s == r ? t : 0;
-        const double* const a = column + runs[s].from + skip;
-        const std::int32_t i = runs[s].to + skip;
-        const std::int32_t count = runs[s].length - skip;
-        if (i < p && j >= p) {
-          for (std::int32_t k = 0; k < count; ++k) panel(j, i + k) += a[k];
-        } else {
-          kernels.add(to + i, a, count);
-        }
-      }
-      to[f_.size()] += column[load];
-      diagonal_[static_cast<std::size_t>(j)] += before.assembled[static_cast<std::size_t>(runs[r].from + t)];
-    }
+  constexpr std::int32_t kForkFrom = 512;  // columns; below, it is done before a thread has come
+  if (in_.may_fork && load >= kForkFrom) {
+    parallel_ranges(static_cast<std::size_t>(load), LowerTriangle::kBlock, [&](std::size_t begin, std::size_t end) {
+      add_columns(before, runs, static_cast<std::int32_t>(begin), static_cast<std::int32_t>(end));
+    });
+  } else {
+    add_columns(before, runs, 0, load);
   }
-  f_.update.column(f_.boundary())[f_.boundary()] += U.column(load)[load];
+  f_.update.column(f_.boundary())[f_.boundary()] += before.update.column(load)[load];
   f_.incoming.push_back({component, std::move(runs)});
 }
 
-void FrontMaker::factor() {
-  const double p = f_.pivots;
-  const double b = f_.boundary() + 1;
-  f_.flops = p * p * p / 3.0 + p * p * b + p * b * b;
-  if (f_.pivots == 0) return;
-  std::vector<double> work(static_cast<std::size_t>(f_.ld()) * kFactorWidth);
-  f_.positive_definite = front_kernels().factor(f_.panel.get(), f_.ld(), f_.pivots, f_.ld(), work.data());
-  for (std::int32_t j = 0; j < f_.pivots && f_.positive_definite; ++j) {
-    const double pivot = panel(j, j) * panel(j, j);
-    // Also false for what is not a number.
-    f_.positive_definite = pivot > in_.null_pivot * diagonal_[static_cast<std::size_t>(j)] && std::isfinite(pivot);
-  }
-  if (f_.positive_definite) subtract_squares();
-}
-
-void FrontMaker::subtract_squares() {
-  const auto one_block = [&](std::size_t block) {
-    const int b = static_cast<int>(block);
-    const double* const L = f_.panel.get() + f_.pivots + LowerTriangle::first_column(b);
-    front_kernels().subtract_product(f_.update.block(b), f_.update.rows(b), L, L, f_.ld(), f_.update.rows(b),
-                                     f_.update.columns(b), f_.pivots);
-  };
-  const auto blocks = static_cast<std::size_t>(f_.update.blocks());
-  if (in_.may_fork) {
-    parallel_for(blocks, one_block);
-  } else {
-    for (std::size_t block = 0; block < blocks; ++block) one_block(block);
+/// Columns [begin, end) of an update. It is ordered as here, but for the nodes that became pivots or have ceased to be
+/// kept in between, so that an entry below the diagonal may come to lie above it only where a pivot and a boundary row
+/// meet.
+void FrontMaker::add_columns(const Front& before, std::span<const Run> runs, std::int32_t begin, std::int32_t end) {
+  const FrontKernels& kernels = front_kernels();
+  const std::int32_t p = f_.pivots;
+  std::size_t r = 0;
+  for (std::int32_t from = begin; from < end; ++from) {
+    while (runs[r].from + runs[r].length <= from) ++r;
+    const double* const column = before.update.column(from);
+    const std::int32_t j = runs[r].to + from - runs[r].from;
+    double* const to = j < p ? &panel(0, j) : f_.update.column(j - p) - p;
+    for (std::size_t s = r; s < runs.size(); ++s) {
+      const std::int32_t skip = s == r ? from - runs[r].from : 0;
+      const double* const a = column + runs[s].from + skip;
+      const std::int32_t i = runs[s].to + skip;
+      const std::int32_t count = runs[s].length - skip;
+      if (i < p && j >= p) {
+        for (std::int32_t k = 0; k < count; ++k) panel(j, i + k) += a[k];
+      } else {
+        kernels.add(to + i, a, count);
+      }
+    }
+    to[f_.size()] += column[before.boundary()];
+    diagonal_[static_cast<std::size_t>(j)] += before.assembled[static_cast<std::size_t>(from)];
   }
 }
 

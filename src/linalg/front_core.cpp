@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/check.h"
 #include "base/parallel.h"
 
 namespace rhexis::linalg {
@@ -41,6 +42,28 @@ std::int32_t FrontTree::Core::find_front(std::int32_t node) const {
     if (std::binary_search(pivots.begin(), pivots.end(), key)) return c;
   }
   return -1;
+}
+
+std::vector<std::int32_t> FrontTree::Core::paths_from(const std::vector<std::int32_t>& components) const {
+  std::vector<char> found(fronts.size(), 0);
+  std::vector<std::int32_t> out;
+  for (std::int32_t c : components) {
+    for (; c >= 0 && found[at(c)] == 0; c = next(c)) {
+      found[at(c)] = 1;
+      out.push_back(c);
+    }
+  }
+  // Those that do not hold the last one hand on upwards, and come first; those that do hand on downwards.
+  const ComponentTree& tree = layout.tree();
+  const auto rank = [&](std::int32_t c) { return tree.holds(c, direction.last) ? 2 * tree.size() - c : c; };
+  std::sort(out.begin(), out.end(), [&](std::int32_t a, std::int32_t b) { return rank(a) < rank(b); });
+  return out;
+}
+
+void FrontTree::Core::check_solvable(const VectorX& x_kept) const {
+  RHEXIS_CHECK(outcome == FrontOutcome::ok, "not factored");
+  RHEXIS_CHECK(static_cast<std::size_t>(x_kept.size()) == kept_dofs.size(), "{} values for {} kept dofs", x_kept.size(),
+               kept_dofs.size());
 }
 
 void FrontTree::Core::set_kept(const std::vector<std::int32_t>& nodes) {

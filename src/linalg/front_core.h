@@ -23,6 +23,8 @@ struct Direction {
 [[nodiscard]] Direction direct(const ComponentTree& tree, std::int32_t last);
 
 struct FrontTree::Core {
+  class Backward;
+
   explicit Core(FrontLayout with) : layout(std::move(with)) {}
 
   FrontLayout layout;
@@ -50,6 +52,10 @@ struct FrontTree::Core {
   [[nodiscard]] std::span<const NodeKey> beyond(std::int32_t component) const;
   /// The front that eliminates the node; -1: none.
   [[nodiscard]] std::int32_t find_front(std::int32_t node) const;
+
+  /// The components and all that come after them, each after those that hand on to it.
+  [[nodiscard]] std::vector<std::int32_t> paths_from(const std::vector<std::int32_t>& components) const;
+  void check_solvable(const VectorX& x_kept) const;
 
   void set_kept(const std::vector<std::int32_t>& nodes);
   /// Makes the fronts that are marked and all after them.

@@ -20,6 +20,36 @@ Eigen::Map<const VectorX, 0, Eigen::InnerStride<>> load_solution(const Front& fr
 
 }  // namespace
 
+/// Backward substitution of one version.
+class FrontTree::Core::Backward {
+ public:
+  Backward(const Core& core, const Forward* forward, const VectorX& amount, double load_amount, VectorX& x)
+      : core_(core), amount_(amount), load_amount_(load_amount), x_(x), y_(core.fronts.size(), nullptr) {
+    if (forward == nullptr) return;
+    for (std::size_t i = 0; i < forward->front.size(); ++i) y_[at(forward->front[i])] = &forward->y[i];
+  }
+
+  /// Everything after it has been solved for. `work` grows as needed.
+  void solve(std::int32_t component, VectorX& work) const {
+    const Front& front = *core_.front(component);
+    const std::int32_t pivots = front.pivots;
+    if (pivots == 0) return;
+    if (work.size() < front.size()) work.resize(front.size());
+    for (std::int32_t k = pivots; k < front.size(); ++k) work[k] = x_[front.dofs[at(k)]];
+    work.head(pivots) = load_amount_ * load_solution(front);
+    if (const Eigen::MatrixXd* const own = y_[at(component)]) work.head(pivots).noalias() += *own * amount_;
+    front_kernels().backward(front.panel.get(), front.ld(), pivots, front.boundary(), work.data());
+    for (std::int32_t k = 0; k < pivots; ++k) x_[front.dofs[at(k)]] = work[k];
+  }
+
+ private:
+  const Core& core_;
+  const VectorX& amount_;
+  double load_amount_;
+  VectorX& x_;
+  std::vector<const Eigen::MatrixXd*> y_;  // per component
+};
+
 FrontTree::Forward FrontTree::forward(std::span<const std::int32_t> dof, const Eigen::MatrixXd& rows) const {
   const Core& core = *core_;
   RHEXIS_CHECK(core.outcome == FrontOutcome::ok, "not factored");
@@ -53,16 +83,9 @@ FrontTree::Forward FrontTree::forward(std::span<const std::int32_t> dof, const E
     RHEXIS_CHECK(place >= 0, "dof {} is not in the assembly", dof[i]);
     reach(c).row(place) += row;
   }
-  if (reached.empty()) return out;
   std::vector<std::int32_t> path;
-  for (const auto& [c, r] : reached) {
-    for (std::int32_t k = c; k >= 0; k = core.next(k)) path.push_back(k);
-  }
-  // Components that do not hold the last one hand on upwards, and come first; those that do hand on downwards.
-  const ComponentTree& tree = core.layout.tree();
-  const auto rank = [&](std::int32_t c) { return tree.holds(c, core.direction.last) ? 2 * tree.size() - c : c; };
-  std::sort(path.begin(), path.end(), [&](std::int32_t a, std::int32_t b) { return rank(a) < rank(b); });
-  path.erase(std::unique(path.begin(), path.end()), path.end());
+  for (const auto& [c, r] : reached) path.push_back(c);
+  path = core.paths_from(path);
   for (const std::int32_t c : path) {
     const Front& front = *core.front(c);
     Eigen::MatrixXd& r = reach(c);
@@ -91,15 +114,10 @@ FrontTree::Forward FrontTree::forward(std::span<const std::int32_t> dof, const E
 void FrontTree::backward(const VectorX& x_kept, const Forward* forward, const VectorX& amount, double load_amount,
                          VectorX& x) const {
   const Core& core = *core_;
-  RHEXIS_CHECK(core.outcome == FrontOutcome::ok, "not factored");
-  RHEXIS_CHECK(static_cast<std::size_t>(x_kept.size()) == core.kept_dofs.size(), "{} values for {} kept dofs",
-               x_kept.size(), core.kept_dofs.size());
+  core.check_solvable(x_kept);
   x.setZero(3 * Eigen::Index{core.layout.node_count()});
   x(core.kept_dofs) = x_kept;
-  std::vector<const Eigen::MatrixXd*> y(core.fronts.size(), nullptr);
-  if (forward != nullptr) {
-    for (std::size_t i = 0; i < forward->front.size(); ++i) y[at(forward->front[i])] = &forward->y[i];
-  }
+  const Core::Backward backward(core, forward, amount, load_amount, x);
   // Levels from the last front outwards: those of one level write what is their own.
   std::vector<std::int32_t> level(core.fronts.size(), 0);
   std::vector<std::vector<std::int32_t>> levels;
@@ -113,20 +131,28 @@ void FrontTree::backward(const VectorX& x_kept, const Forward* forward, const Ve
   for (const std::vector<std::int32_t>& together : levels) {
     parallel_ranges(together.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       VectorX work;
-      for (std::size_t i = begin; i < end; ++i) {
-        const Front& front = *core.front(together[i]);
-        const int pivots = front.pivots;
-        const int boundary = front.boundary();
-        if (pivots == 0) continue;
-        if (work.size() < front.size()) work.resize(front.size());
-        for (std::int32_t k = pivots; k < front.size(); ++k) work[k] = x[front.dofs[at(k)]];
-        work.head(pivots) = load_amount * load_solution(front);
-        if (const Eigen::MatrixXd* const own = y[at(together[i])]) work.head(pivots).noalias() += *own * amount;
-        front_kernels().backward(front.panel.get(), front.ld(), pivots, boundary, work.data());
-        for (std::int32_t k = 0; k < pivots; ++k) x[front.dofs[at(k)]] = work[k];
-      }
+      for (std::size_t i = begin; i < end; ++i) backward.solve(together[i], work);
     });
   }
+}
+
+void FrontTree::backward_at(std::span<const std::int32_t> nodes, const VectorX& x_kept, const Forward* forward,
+                            const VectorX& amount, double load_amount, VectorX& x) const {
+  const Core& core = *core_;
+  core.check_solvable(x_kept);
+  x.resize(3 * Eigen::Index{core.layout.node_count()});
+  std::vector<std::int32_t> needed;
+  for (const std::int32_t node : nodes) {
+    RHEXIS_CHECK(node >= 0 && node < core.layout.node_count(), "node {} of {}", node, core.layout.node_count());
+    x.segment<3>(3 * Eigen::Index{node}).setZero();
+    const std::int32_t c = core.find_front(node);
+    if (c >= 0) needed.push_back(c);
+  }
+  x(core.kept_dofs) = x_kept;
+  const Core::Backward backward(core, forward, amount, load_amount, x);
+  needed = core.paths_from(needed);
+  VectorX work;
+  for (auto c = needed.rbegin(); c != needed.rend(); ++c) backward.solve(*c, work);
 }
 
 }  // namespace rhexis::linalg

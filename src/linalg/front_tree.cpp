@@ -13,6 +13,10 @@ namespace {
 
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
+// So many kept nodes are carried to wherever the last front is for next to nothing: the hand that comes and goes does
+// not draw it away from the crack.
+constexpr std::size_t kFewNodes = 16;
+
 /// The component in the middle of what changed, or, where no element did, of the kept nodes: most lies neither below
 /// any one child of it, nor above. Nodes that are always kept have no place. `otherwise` when there is nothing.
 std::int32_t middle_of(const FrontLayout& layout, const std::vector<std::int32_t>& touched,
@@ -20,7 +24,7 @@ std::int32_t middle_of(const FrontLayout& layout, const std::vector<std::int32_t
   const ComponentTree& tree = layout.tree();
   std::vector<std::int32_t> count(at(tree.size()), 0);
   for (const std::int32_t component : touched) ++count[at(component)];
-  if (touched.empty()) {
+  if (touched.empty() && kept.size() > kFewNodes) {
     for (const std::int32_t node : kept) {
       if (layout.home(node) >= 0) ++count[at(layout.home(node))];
     }

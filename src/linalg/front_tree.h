@@ -85,6 +85,11 @@ class FrontTree {
   /// and dofs outside the assembly come out zero. Length 3 * node_count at the time of this version.
   void backward(const VectorX& x_kept, const Forward* forward, const VectorX& amount, double load_amount,
                 VectorX& x) const;
+  /// The same at some nodes alone, bit for bit: only the fronts that lie between them and the last one are solved with,
+  /// which is little where elements have changed of late. x has the length above, and other entries of it hold nothing
+  /// of meaning afterwards.
+  void backward_at(std::span<const std::int32_t> nodes, const VectorX& x_kept, const Forward* forward,
+                   const VectorX& amount, double load_amount, VectorX& x) const;
 
   /// Fronts in all, and those that the last update factored again.
   [[nodiscard]] std::size_t front_count() const;

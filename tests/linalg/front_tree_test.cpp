@@ -74,6 +74,10 @@ void expect_exact(const FrontTree& tree, const FrontBody& body, const Nodes& kep
   VectorX x;
   tree.backward(solve_kept(forward.kept * amount + 0.7 * tree.schur_load()), &forward, amount, 0.7, x);
   EXPECT_LT(difference(x, VectorX(flexible * rows * amount + 0.7 * oracle.solution)), kSame);
+  VectorX some = VectorX::Constant(x.size(), 1e300);  // what it does not solve for is not read
+  const Nodes nodes{static_cast<std::int32_t>(random() % body.position.size()), dofs[0] / 3, dofs.back() / 3};
+  tree.backward_at(nodes, solve_kept(forward.kept * amount + 0.7 * tree.schur_load()), &forward, amount, 0.7, some);
+  for (const std::int32_t node : nodes) EXPECT_TRUE(some.segment<3>(3 * node) == x.segment<3>(3 * node)) << node;
   tree.backward(solve_kept(tree.schur_load()), nullptr, VectorX(), 1.0, x);
   EXPECT_LT(difference(x, oracle.solution), kSame);
   EXPECT_TRUE(x.allFinite());
