@@ -45,6 +45,7 @@ void add_tear(CLI::App& app, const Common& common, int& code);
 void add_check(CLI::App& app, const Common& common, int& code);
 void add_compare(CLI::App& app, const Common& common, int& code);
 void add_mesh(CLI::App& app, const Common& common, int& code);
+void add_study(CLI::App& app, const Common& common, int& code);
 void add_scene_reference(CLI::App& app, const Common& common, int& code);
 
 }  // namespace rhexis::apps

@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
   add_check(app, common, code);
   add_compare(app, common, code);
   add_mesh(app, common, code);
+  add_study(app, common, code);
   add_scene_reference(app, common, code);
   mention_common_options(app);
 

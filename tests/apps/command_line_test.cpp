@@ -61,6 +61,17 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"TubeWithoutRadius", "mesh make tube x.msh --length 0.04 --nodes 400", "--radius is required"},
         Misuse{"TubeWithoutLength", "mesh make tube x.msh --radius 0.005 --nodes 400", "--length is required"},
         Misuse{"NegativeNumberIsAValue", "mesh make tube x.msh --nodes 400 --radius -0.005 --length 0.04", "radius"},
+        Misuse{"StudyWithoutName", "study", "`rhexis study` needs a command: restructuring"},
+        Misuse{"StudyWithATypo", "study restructering",
+               "unknown command 'restructering' (did you mean 'restructuring'?)"},
+        Misuse{"NoSuchStudy", "study everything", "unknown command 'everything' (see `rhexis study --help`)"},
+        Misuse{"StudyOfNoMode", "study restructuring --mode slow-pul",
+               "unknown mode 'slow-pul' (did you mean 'slow-pull'?)"},
+        Misuse{"StudyOfNoWay", "study restructuring --way sparce", "unknown way 'sparce' (did you mean 'sparse'?)"},
+        Misuse{"StudyOfNoPlate", "study restructuring --nodes 506 3", "a plate of this shape cannot have 3 nodes"},
+        Misuse{"StudyOfNoNumber", "study restructuring --nodes many", "--nodes"},
+        Misuse{"StudyOfNegativeTime", "study restructuring --seconds -1", "--seconds"},
+        Misuse{"StudyIntoAFile", "study restructuring --out README.md/x", "cannot make folder 'README.md/x'"},
         Misuse{"ReferenceWithATypo", "scene-reference --shema", "unknown option '--shema' (did you mean '--schema'?)"},
         Misuse{"ReferenceOfSomething", "scene-reference model", "not expected: model (see `rhexis scene-reference"},
         Misuse{"UnknownUnit", "mesh info none.msh --unit furlong",
@@ -71,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(CommandLineHelp, EveryCommandHasAnExample) {
   for (const char* command :
        {"", "solve", "check", "compare", "mesh", "mesh info", "mesh convert", "mesh make", "mesh make plate",
-        "mesh make bar", "mesh make cube", "mesh make tube", "scene-reference"}) {
+        "mesh make bar", "mesh make cube", "mesh make tube", "study", "study restructuring", "scene-reference"}) {
     const test::Ran ran = test::run_rhexis(std::string(command) + " --help");
     EXPECT_EQ(ran.code, 0) << command;
     EXPECT_THAT(ran.out, HasSubstr("Example: rhexis ")) << command;

@@ -1,0 +1,111 @@
+// rhexis study NAME [--out DIR]: one experiment of the two papers, into tables and figures.
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+
+#include "apps/command.h"
+#include "apps/interrupt.h"
+#include "apps/progress.h"
+#include "studies/restructuring.h"
+
+namespace rhexis::apps {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// A study is a function from its options to its rows, of which each column of `shown` is for people.
+struct StudyRun {
+  std::string name;
+  std::string out;
+  std::vector<std::string> shown;
+  std::function<Expected<ordered_json>(const studies::StudyFolder&, const studies::Progress&)> run;
+};
+
+std::string cell_text(const ordered_json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float() && std::isfinite(value.get<double>())) return fmt::format("{:.4g}", value.get<double>());
+  return value.is_number_integer() ? value.dump() : "-";
+}
+
+/// Columns as wide as what stands in them.
+void print_rows(const ordered_json& rows, const std::vector<std::string>& columns) {
+  std::vector<std::size_t> width;
+  for (const std::string& column : columns) {
+    width.push_back(column.size());
+    for (const ordered_json& row : rows) width.back() = std::max(width.back(), cell_text(row.at(column)).size());
+  }
+  for (std::size_t k = 0; k < columns.size(); ++k) fmt::print("{:>{}}  ", columns[k], width[k]);
+  fmt::print("\n");
+  for (const ordered_json& row : rows) {
+    for (std::size_t k = 0; k < columns.size(); ++k) fmt::print("{:>{}}  ", cell_text(row.at(columns[k])), width[k]);
+    fmt::print("\n");
+  }
+}
+
+int run(const StudyRun& study, const Common& common) {
+  const std::filesystem::path out =
+      study.out.empty() ? std::filesystem::path("out") / study.name : std::filesystem::path(study.out);
+  const Expected<studies::StudyFolder> folder = studies::StudyFolder::open(out);
+  if (!folder) return report(folder.error());
+  bool begun = false;
+  bool stopped = false;
+  Expected<ordered_json> rows;
+  {
+    const Interrupt interrupt;
+    Progress progress(!common.quiet);
+    rows = study.run(*folder, [&](double fraction, std::string_view what) {
+      begun = true;
+      progress.update(fraction, std::string(what));
+      stopped = interrupt.asked();
+      return !stopped;
+    });
+  }
+  if (!rows) {
+    report(rows.error());
+    return begun ? kFailedComputation : kBadInput;
+  }
+  if (common.json) print_json(*rows);
+  if (!common.json && !common.quiet) print_rows(*rows, study.shown);
+  say(common, "results  {}\n", out.string());
+  if (!stopped) return kDone;
+  fmt::print(stderr, "rhexis: study {}: stopped by Ctrl-C, the tables hold what was measured until then\n", study.name);
+  return kFailedComputation;
+}
+
+void add_restructuring(CLI::App& study, const Common& common, int& code) {
+  CLI::App* command = study.add_subcommand("restructuring", "What an advance of a crack costs, by five ways");
+  command->footer("Example: rhexis study restructuring --nodes 506 1270 5000 --mode slow-pull");
+  auto one = std::make_shared<StudyRun>();
+  one->name = "restructuring";
+  one->shown = {"nodes",     "mode",    "way",        "advances",        "ms_per_advance",
+                "ms_median", "ms_most", "ms_per_tet", "sparse_over_this"};
+  auto options = std::make_shared<studies::RestructuringOptions>();
+  command->add_option("--out", one->out, "folder for the tables and figures; out/restructuring unless given");
+  command->add_option("--nodes", options->nodes, "of the plates")->type_name("COUNT")->expected(-1);
+  command->add_option("--mode", options->modes, fmt::format("{}", fmt::join(studies::kTearModes, ", ")))
+      ->type_name("MODE")
+      ->expected(-1);
+  command->add_option("--way", options->ways, fmt::format("{}", fmt::join(studies::kWays, ", ")))
+      ->type_name("WAY")
+      ->expected(-1);
+  command->add_option("--seconds", options->seconds_per_case, "a plate is torn anew from its start for about so long")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.0, 3600.0));
+  one->run = [options](const studies::StudyFolder& folder, const studies::Progress& progress) {
+    return studies::run_restructuring(*options, folder, progress);
+  };
+  command->callback([one, &common, &code] { code = run(*one, common); });
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, const Common& common, int& code) {
+  CLI::App* study = app.add_subcommand("study", "The experiments of the papers, into tables and figures");
+  study->footer("Example: rhexis study restructuring --out out/restructuring");
+  study->require_subcommand(1);
+  for (const auto add : {add_restructuring}) add(*study, common, code);
+}
+
+}  // namespace rhexis::apps

@@ -1,0 +1,44 @@
+// rhexis study NAME, as a user types it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/run_command.h"
+
+namespace rhexis {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+TEST(StudyCommand, WritesItsFilesAndPrintsItsRows) {
+  const std::filesystem::path folder = test::fresh_folder("study");
+  const std::string arguments =
+      "study restructuring --nodes 150 --mode slow-pull imposed --way sparse exact --seconds 0 --out '" +
+      (folder / "out").string() + "'";
+  const test::Ran table = test::run_rhexis(arguments);
+  ASSERT_EQ(table.code, 0) << table.err;
+  EXPECT_THAT(table.out, HasSubstr("ms_per_advance"));
+  EXPECT_THAT(table.out, HasSubstr("slow-pull"));
+  for (const char* name : {"restructuring.csv", "restructuring.json", "restructuring.svg"})
+    EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << name;
+
+  const test::Ran as_json = test::run_rhexis("--json " + arguments);
+  ASSERT_EQ(as_json.code, 0) << as_json.err;
+  const json rows = json::parse(as_json.out);
+  ASSERT_EQ(rows.size(), 4U);
+  for (const json& row : rows)
+    for (const char* key : {"nodes", "mode", "way", "ms_per_advance", "ms_per_tet", "advances"})
+      EXPECT_TRUE(row.contains(key)) << key;
+  EXPECT_EQ(rows, json::parse(test::slurp(folder / "out" / "restructuring.json")));
+  EXPECT_EQ(test::run_rhexis("--quiet " + arguments).out, "");
+}
+
+TEST(StudyCommand, HelpNamesTheWays) {
+  EXPECT_THAT(test::run_rhexis("study restructuring --help").out, HasSubstr("exact-all-work"));
+}
+
+}  // namespace
+}  // namespace rhexis
