@@ -50,6 +50,9 @@ std::vector<std::pair<NodeId, NodeId>> distinct_edges(const TetMesh& mesh) {
   return edges;
 }
 
+/// Six volumes below this part of a cubed edge are the rounding of coordinates: the tet is flat.
+constexpr double kFlatVolume = 1e-14;
+
 }  // namespace
 
 double radius_ratio(const std::array<Vec3, 4>& x) {
@@ -61,7 +64,9 @@ double radius_ratio(const std::array<Vec3, 4>& x) {
   // r_in = 3 V / A and r_circ = |a^2 b x c + b^2 c x a + c^2 a x b| / (12 V)
   const double circum =
       (a.squaredNorm() * b.cross(c) + b.squaredNorm() * c.cross(a) + c.squaredNorm() * a.cross(b)).norm();
-  if (six_volumes == 0.0) return 0.0;
+  // Where two corners have come together both volume and circumsphere are rounding, and so would be their ratio.
+  const double size = std::max({a.norm(), b.norm(), c.norm()});
+  if (std::abs(six_volumes) <= kFlatVolume * size * size * size) return 0.0;
   return std::min(1.0, 6.0 * six_volumes * six_volumes / (twice_area * circum));
 }
 

@@ -42,6 +42,17 @@ TEST(RadiusRatio, DoesNotDependOnSizePlaceOrOrder) {
   EXPECT_NEAR(radius_ratio({kCorner[2], kCorner[1], kCorner[0], kCorner[3]}), expected, 1e-15);
 }
 
+TEST(RadiusRatio, OfCornersThatHaveComeTogetherIsZero) {
+  // Two nodes brought to one point, up to rounding: not a regular tet of no size.
+  const Vec3 a(1.0 / 120.0, 1.0 / 120.0, 0.15);
+  const Vec3 b(0.0, 0.0, 2.4 / 17.0);
+  const Vec3 c(0.0, 1.0 / 60.0, 2.5 / 17.0);
+  for (const double apart : {0.0, 1e-18, 3e-17, 1e-16}) {
+    EXPECT_LT(radius_ratio({a, b, c, c + apart * Vec3(1.0, 2.0, -1.0)}), 1e-10);
+    EXPECT_LT(radius_ratio({c + apart * Vec3(1.0, 2.0, -1.0), b, c, a}), 1e-10);
+  }
+}
+
 TEST(RadiusRatio, OfFlatTetsIsZero) {
   std::array<Vec3, 4> flat = kCorner;
   flat[3] = Vec3(0.3, 0.3, 0.0);
