@@ -7,7 +7,6 @@
 #include "base/check.h"
 #include "base/clock.h"
 #include "fracture/energy_release.h"
-#include "fracture/pieces.h"
 #include "session/tear_session.h"
 
 namespace rhexis::session {
@@ -170,7 +169,7 @@ bool TearSession::take(Change change, TickReport& report, const Observer& observ
   record.nodes_moved = static_cast<int>(edit.moved.size());
   record.nodes_copied = static_cast<int>(edit.copied.size());
   record.volume_lost = change.incision.volume_lost;
-  record.pieces = pieces_;
+  record.pieces = pieces();
   record.finished = cracks_[change.crack].finished;
   record.crack_area = crack_area();
   record.force_after = hand_.force();
@@ -187,9 +186,8 @@ bool TearSession::take(Change change, TickReport& report, const Observer& observ
 void TearSession::apply(mesh::MeshEdit edit) {
   body_.apply(std::move(edit));
   follow_nodes();
-  const fracture::Pieces pieces = fracture::find_pieces(body_, held_);
-  std::vector<TetId> loose = fracture::unsupported_tets(body_, pieces);
-  pieces_ = static_cast<int>(pieces.count());
+  fracture::update_pieces(pieces_, body_, body_.history().back(), held_);
+  std::vector<TetId> loose = fracture::unsupported_tets(body_, pieces_);
   if (!loose.empty()) {
     mesh::MeshEdit whole = body_.undo();
     whole.frozen = std::move(loose);

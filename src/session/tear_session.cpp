@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "fracture/pieces.h"
 #include "mesh/quality.h"
 #include "response/exact_response.h"
 
@@ -22,6 +21,7 @@ TearSession::TearSession(mesh::TetMesh mesh, TearSettings settings)
     settings_.criterion = surroundings_.is_plate() ? "maximum-principal" : "maximum-hoop";
   held_.assign(3 * mesh.node_count(), 0);
   for (const model::PrescribedDof& support : settings_.body.supports) held_[static_cast<std::size_t>(support.dof)] = 1;
+  pieces_ = fracture::find_pieces(body_, held_);
   body_force_ = settings_.body.density * settings_.body.gravity;
   const VectorX& force = settings_.body.dead_force;
   if (force.size() > 0 && !force.isZero(0.0)) {
@@ -104,7 +104,7 @@ mesh::MeshEdit TearSession::take_back(const std::vector<fracture::Crack>& cracks
   cracks_ = cracks;
   reach_.resize(cracks_.size(), 0.0);
   follow_nodes();
-  pieces_ = static_cast<int>(fracture::find_pieces(body_, held_).count());
+  pieces_ = fracture::find_pieces(body_, held_);
   return edit;
 }
 

@@ -15,6 +15,7 @@
 #include "fracture/local_object.h"
 #include "fracture/path.h"
 #include "fracture/path_start.h"
+#include "fracture/pieces.h"
 #include "mesh/torn_mesh.h"
 #include "response/response.h"
 #include "session/advance.h"
@@ -61,7 +62,7 @@ class TearSession {
   /// One per crack that still runs.
   [[nodiscard]] const std::vector<fracture::LocalObject>& local_objects() const { return local_; }
   [[nodiscard]] const std::vector<AdvanceRecord>& advances() const { return advances_; }
-  [[nodiscard]] int pieces() const { return pieces_; }
+  [[nodiscard]] int pieces() const { return static_cast<int>(pieces_.count()); }
   [[nodiscard]] double mean_edge() const { return surroundings_.mean_edge(); }  ///< m, of the intact body
   [[nodiscard]] double crack_area() const;                                      ///< m^2
   [[nodiscard]] double stored_energy();                                         ///< J: Response::stored_energy now
@@ -120,7 +121,7 @@ class TearSession {
   std::vector<fracture::LocalObject> local_;                 ///< one for each of those
   std::vector<TetId> surface_tets_;                          ///< while no crack runs: where one may start
   std::vector<AdvanceRecord> advances_;
-  int pieces_ = 1;
+  fracture::Pieces pieces_;
   Hand hand_;
   int ticks_ = 0;
 };
