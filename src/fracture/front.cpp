@@ -42,7 +42,8 @@ std::vector<FrontPoint> resample(const std::vector<FrontPoint>& line, double len
       ++at;
       segment = (line[at + 1].position - line[at].position).norm();
     }
-    out.push_back(between(line[at], line[at + 1], std::clamp((wanted - passed) / segment, 0.0, 1.0)));
+    const double part = segment > 0.0 ? std::clamp((wanted - passed) / segment, 0.0, 1.0) : 0.0;
+    out.push_back(between(line[at], line[at + 1], part));
   }
   out.push_back(line.back());
   return out;

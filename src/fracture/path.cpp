@@ -66,11 +66,12 @@ void describe(const Crack& crack, Advance& advance) {
   advance.angle = std::atan2(sum[1], sum[0]);
 }
 
-/// Makes every step longer by `by` m at the longest, the others in proportion.
-void lengthen(Advance& advance, double by) {
-  const double factor = (advance.length + by) / advance.length;
-  for (Vec3& step : advance.step) step *= factor;
-  advance.length += by;
+/// Makes every step longer by `by` m at the longest, the others in proportion; steps that have come to nothing, because
+/// the ends went back to the surface where they were, go on in the present direction.
+void lengthen(const Crack& crack, Advance& advance, double by) {
+  const double factor = advance.length > 0.0 ? (advance.length + by) / advance.length : 0.0;
+  for (std::size_t i = 0; i < advance.step.size(); ++i)
+    advance.step[i] = factor > 0.0 ? Vec3(factor * advance.step[i]) : Vec3(by * crack.front[i].direction);
 }
 
 std::vector<FrontPoint> moved_front(const Crack& crack, const Advance& advance) {
@@ -202,7 +203,7 @@ Incision cut_along(const mesh::TornMesh& body, const Surroundings& surroundings,
   Incision incision = incise(body, surroundings, sweep(crack, advance, kCutMargin * edge), settings);
   for (int longer = 0; longer < kMostLengthenings; ++longer) {
     if (incision.edges_cut > 0 || has_left(crack, advance, surroundings)) break;
-    lengthen(advance, kLengthening * edge);
+    lengthen(crack, advance, kLengthening * edge);
     if (!crack.uniform) end_on_surface(crack, advance.step, surroundings);
     describe(crack, advance);
     incision = incise(body, surroundings, sweep(crack, advance, kCutMargin * edge), settings);

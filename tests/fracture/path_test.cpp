@@ -217,6 +217,46 @@ TEST(Advanced, FrontsOfABarStayRegularAndOnItsSurface) {
   }
 }
 
+TEST(Advanced, FrontsOfATubeEndOnItsWalls) {
+  const mesh::TetMesh mesh = *mesh::make_tube({.radius = 0.005, .length = 0.03, .wall = 0.002, .bend = 30.0}, 3000);
+  const Surroundings tube(mesh);
+  const mesh::TornMesh body(mesh);
+  std::mt19937_64 random(8);
+  int advances = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    const double z = 0.004 + 0.004 * uniform(random);
+    const auto start =
+        make_crack(Vec3(0.0, 0.007, z), Vec3(0.0, 0.006 * uniform(random) - 0.002, z), Vec3::UnitX(), tube);
+    if (!start) continue;
+    std::vector<Crack> cracks = start->cracks;
+    for (int step = 0; step < 30 && !cracks.empty(); ++step) {
+      const Crack crack = cracks.back();
+      cracks.pop_back();
+      if (crack.finished) continue;
+      std::vector<Judgement> judgements;
+      for (const FrontPoint& point : crack.front) {
+        const double angle = (2.0 * uniform(random) - 1.0) * 90.0 * kDegree;
+        judgements.push_back(towards(std::cos(angle) * point.direction + std::sin(angle) * point.normal(),
+                                     4.0 * tube.mean_edge() * uniform(random)));
+      }
+      const auto advance = plan_advance(crack, judgements, tube);
+      ASSERT_TRUE(advance);
+      ASSERT_TRUE(std::isfinite(advance->length));
+      for (const Crack& after : advanced(crack, *advance, tube, body)) {
+        for (const FrontPoint& point : after.front) {
+          ASSERT_TRUE(point.position.allFinite() && point.direction.allFinite());
+          if (after.finished) continue;
+          EXPECT_NEAR(point.direction.norm(), 1.0, 1e-12);
+          EXPECT_NEAR(point.direction.dot(point.tangent), 0.0, 1e-12);
+        }
+        if (!after.finished) cracks.push_back(after);
+      }
+      ++advances;
+    }
+  }
+  EXPECT_GT(advances, 50);
+}
+
 TEST(Advanced, KeepsTheUpperFlank) {
   const mesh::TetMesh mesh = *mesh::make_bar({Vec3(0.1, 0.1, 0.3)}, 1500);
   const Surroundings bar(mesh);
