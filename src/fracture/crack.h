@@ -31,7 +31,8 @@ struct Crack {
 /// little beyond the body where the front ends on its surface, so that every edge there is met.
 struct CutSurface {
   struct Triangle {
-    Vec3 a, b, c;  ///< m; normal (b - a) x (c - a); `a` is on the front before, if any
+    Vec3 a, b,
+        c;  ///< m; normal (b - a) x (c - a); `a` is on the front before, `c` on the one after, if there are fronts
   };
   std::vector<Triangle> triangles;
 };

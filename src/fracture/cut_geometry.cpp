@@ -19,6 +19,12 @@ bool overlap(const mesh::BoundingBox& box, const Vec3& from, const Vec3& to) {
   return (box.from.array() <= to.array()).all() && (from.array() <= box.to.array()).all();
 }
 
+std::vector<Vec3> corners_of(const std::vector<CutTriangle>& triangles, std::size_t which) {
+  std::vector<Vec3> corners;
+  for (const CutTriangle& triangle : triangles) corners.push_back(triangle.corner[which]);
+  return corners;
+}
+
 double squared_distance(const mesh::BoundingBox& box, const Vec3& at) {
   return (at - at.cwiseMax(box.from).cwiseMin(box.to)).squaredNorm();
 }
@@ -57,24 +63,32 @@ void CutGeometry::add(const std::array<Vec3, 3>& corner) {
   triangles_.push_back({corner, normal / twice_area, {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)}});
 }
 
-CutGeometry CutGeometry::behind(std::span<const mesh::MeshEdit> history, double reach, double gap) const {
+CutGeometry CutGeometry::behind(std::span<const mesh::MeshEdit> history, double mean_edge) const {
+  const double gap = kJoinGap * mean_edge;
   CutGeometry found({}, on_plane_);
-  std::vector<Vec3> starts;
-  for (const CutTriangle& triangle : triangles_) starts.push_back(triangle.corner[0]);
-  const mesh::BoundingBox wide = box(reach);
+  std::vector<Vec3> starts = corners_of(triangles_, 0);
+  const mesh::BoundingBox wide = box(kJoinReach * mean_edge);
   for (auto edit = history.rbegin(); edit != history.rend(); ++edit) {
     CutGeometry part({}, on_plane_);
     for (const std::array<Vec3, 3>& corner : edit->swept) part.add(corner);
+    const std::vector<Vec3> part_starts = corners_of(part.triangles_, 0);
+    const std::vector<Vec3> part_ends = corners_of(part.triangles_, 2);
     std::erase_if(part.triangles_,
                   [&](const CutTriangle& triangle) { return !overlap(wide, triangle.box.from, triangle.box.to); });
-    const bool leads_here = std::any_of(starts.begin(), starts.end(), [&](const Vec3& start) {
-      return std::any_of(part.triangles_.begin(), part.triangles_.end(), [&](const CutTriangle& triangle) {
-        return (triangle.nearest(start) - start).squaredNorm() <= gap * gap;
-      });
+    const bool leads_here = std::any_of(part.triangles_.begin(), part.triangles_.end(), [&](const CutTriangle& t) {
+      const Vec3& b = t.corner[1];
+      const Vec3& c = t.corner[2];
+      const auto is_ahead = [&](const Vec3& x) {
+        return std::find(part_starts.begin(), part_starts.end(), x) == part_starts.end() &&
+               std::find(part_ends.begin(), part_ends.end(), x) != part_ends.end();
+      };
+      return is_ahead(b) && is_ahead(c) && std::any_of(starts.begin(), starts.end(), [&](const Vec3& start) {
+               return (nearest_on_segment(b, c, start) - start).squaredNorm() <= gap * gap;
+             });
     });
     if (!leads_here) continue;
     found.join(part);
-    for (const CutTriangle& triangle : part.triangles_) starts.push_back(triangle.corner[0]);
+    starts.insert(starts.end(), part_starts.begin(), part_starts.end());
   }
   return found;
 }

@@ -11,6 +11,12 @@
 
 namespace rhexis::fracture {
 
+/// How far behind an incision its crack is looked at again, in mean edges. A front stands between nodes: the last faces
+/// behind it still hang together at their nodes, and come apart when the crack has gone past these.
+inline constexpr double kJoinReach = 2.0;
+/// A front may be smoothed and given other points between two incisions, by less than this many mean edges.
+inline constexpr double kJoinGap = 0.5;
+
 /// One triangle with its plane. Distances are signed, positive above.
 struct CutTriangle {
   std::array<Vec3, 3> corner;
@@ -30,9 +36,10 @@ class CutGeometry {
   /// (or whose area is not a number) are left out.
   CutGeometry(std::span<const CutSurface::Triangle> triangles, double on_plane);
 
-  /// The crack that leads to this surface: what earlier edits swept within `reach` (m) of it, and from where it or one
-  /// of those starts no further than `gap` (m). Not other cracks: what is above those may be below this one.
-  [[nodiscard]] CutGeometry behind(std::span<const mesh::MeshEdit> history, double reach, double gap) const;
+  /// The crack that leads to this surface: what earlier edits swept within kJoinReach of it, and whose front (b to c of
+  /// their triangles, see CutSurface) is no further than kJoinGap from where this one starts, or one of those. Not
+  /// other cracks that it meets: what is above those may be below this one. `mean_edge` in m.
+  [[nodiscard]] CutGeometry behind(std::span<const mesh::MeshEdit> history, double mean_edge) const;
   /// Adds the triangles of the other, behind its own.
   void join(const CutGeometry& other);
 

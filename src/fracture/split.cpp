@@ -11,9 +11,6 @@
 namespace rhexis::fracture {
 namespace {
 
-/// A front may be smoothed and given other points between two incisions, by less than this many mean edges.
-constexpr double kJoinGap = 0.5;
-
 /// On which side of the surface the tets are, as far as asked.
 class Sides {
  public:
@@ -80,11 +77,10 @@ std::vector<mesh::TetFace> faces_between(const mesh::TornMesh& body, Sides sides
 
 Incision incise_splitting(const mesh::TornMesh& body, const Surroundings& surroundings, const CutGeometry& surface,
                           const IncisionSettings& settings) {
-  const double reach = kJoinReach * settings.mean_edge;
-  const CutGeometry behind = surface.behind(body.history(), reach, kJoinGap * settings.mean_edge);
+  const CutGeometry behind = surface.behind(body.history(), settings.mean_edge);
   CutGeometry joined = surface;
   joined.join(behind);
-  const std::vector<TetId> near = tets_near(body, surroundings, joined, surface.box(reach));
+  const std::vector<TetId> near = tets_near(body, surroundings, joined, surface.box(kJoinReach * settings.mean_edge));
   Snapping snapping(body, joined, settings, near);
 
   Incision incision;
