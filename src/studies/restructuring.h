@@ -39,13 +39,13 @@ struct RestructuringOptions {
 };
 inline constexpr int kMostRounds = 10;
 
-/// Runs the study and writes restructuring.csv, .json and .svg. Gives the rows, one per plate, mode and way that was
-/// timed at all, ordered by them. Errors: an unknown mode or way, a plate that cannot be, a folder that cannot be
-/// written to; stopped before there was a row.
+/// Runs the study and writes restructuring.csv, .json and .svg, anew after every plate and mode. Gives the rows, one
+/// per plate, mode and way that was timed at all, ordered by them. Errors: an unknown mode or way, a plate that cannot
+/// be, a folder that cannot be written to; stopped before there was a row.
 ///
 /// Of a row: nodes (as asked for), mode, way, advances (how many were timed), ms_per_advance (their mean) and its
 /// spread (ms_median, ms_least, ms_most), ms_per_tet (removed), tets_per_advance, length_mm (mean advance),
-/// sparse_over_this (how many times longer `sparse` took on the same advances), the means of the parts (remesh_ms,
+/// sparse_over_this (how many times longer `sparse` took in the same rounds), the means of the parts (remesh_ms,
 /// local_ms, update_ms, of which wait_ms; assembly_ms, analysis_ms, factor_ms), mesh_nodes, mesh_tets, threads. What a
 /// way does not have is null.
 Expected<nlohmann::ordered_json> run_restructuring(const RestructuringOptions& options, const StudyFolder& folder,

@@ -130,26 +130,18 @@ Expected<void> RestructuringCase::follow(Follower& follower, const TornOn& torn,
 }
 
 Expected<bool> RestructuringCase::run_round(const std::function<bool()>& told) {
+  // Both exact ways take turns, when both are wanted.
   ++round_;
-  Expected<TornOn> torn = TornOn::start(plate_, mode_, true);
+  const bool all_work = wants("exact") && wants("exact-all-work") ? round_ % 2 == 1 : wants("exact-all-work");
+  const std::string_view exact = all_work ? "exact-all-work" : "exact";
+  Expected<TornOn> torn = TornOn::start(plate_, mode_, !all_work);
   if (!torn) return fail(std::move(torn.error()));
-  std::optional<TornOn> inline_torn;
-  if (wants("exact-all-work")) {
-    Expected<TornOn> started = TornOn::start(plate_, mode_, false);
-    if (!started) return fail(std::move(started.error()));
-    inline_torn = std::move(*started);
-  }
   Follower follower(plate_);
   follower.take(torn->body().history().front());
   while (!torn->at_end()) {
     const std::size_t from = torn->advances().size();
     torn->tear_on(kBlock);
-    keep_exact("exact", *torn, from);
-    if (inline_torn) {
-      const std::size_t inline_from = inline_torn->advances().size();
-      inline_torn->tear_on(torn->advances().size() - from);
-      keep_exact("exact-all-work", *inline_torn, inline_from);
-    }
+    keep_exact(exact, *torn, from);
     for (std::size_t advance = from; advance < torn->advances().size(); ++advance) {
       follower.take(torn->body().history()[advance + 1]);
       if (Expected<void> done = follow(follower, *torn, advance); !done) return fail(std::move(done.error()));
@@ -160,19 +152,17 @@ Expected<bool> RestructuringCase::run_round(const std::function<bool()>& told) {
 }
 
 double RestructuringCase::sparse_over(std::string_view way) const {
-  const auto sparse = done_.find("sparse");
-  const auto other = done_.find(way);
-  if (sparse == done_.end() || other == done_.end()) return Restructured::kNone;
-  double of_sparse = 0.0;
-  double of_other = 0.0;
-  for (const Restructured& one : sparse->second) {
-    for (const Restructured& two : other->second) {
-      if (one.round != two.round || one.advance != two.advance) continue;
-      of_sparse += one.seconds;
-      of_other += two.seconds;
-    }
-  }
-  return of_other > 0.0 ? of_sparse / of_other : Restructured::kNone;
+  const auto mean_beside = [&](std::string_view what, std::string_view beside) {
+    std::vector<bool> has(static_cast<std::size_t>(round_) + 1, false);
+    if (const auto found = done_.find(beside); found != done_.end())
+      for (const Restructured& one : found->second) has[static_cast<std::size_t>(one.round)] = true;
+    std::vector<double> seconds;
+    if (const auto found = done_.find(what); found != done_.end())
+      for (const Restructured& one : found->second)
+        if (has[static_cast<std::size_t>(one.round)]) seconds.push_back(one.seconds);
+    return seconds.empty() ? Restructured::kNone : Spread(seconds).mean;
+  };
+  return mean_beside("sparse", way) / mean_beside(way, "sparse");
 }
 
 std::vector<ordered_json> RestructuringCase::rows(int nodes) const {

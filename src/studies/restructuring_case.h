@@ -35,10 +35,12 @@ class RestructuringCase {
   RestructuringCase(const StudyPlate& plate, TearMode mode, std::vector<std::string> ways)
       : plate_(plate), mode_(mode), ways_(std::move(ways)) {}
 
-  /// Tears the plate from its start to its end, once. `told` after each block of advances; false stops. Errors: a torn
-  /// body that is not stable.
+  /// Tears the plate from its start to its end, once, by one of the exact ways: they take turns. `told` after each
+  /// block of advances; false stops. Errors: a torn body that is not stable.
   Expected<bool> run_round(const std::function<bool()>& told);
 
+  /// Rounds until every way has been timed once.
+  [[nodiscard]] int least_rounds() const { return wants("exact") && wants("exact-all-work") ? 2 : 1; }
   /// One row per way that was timed; see run_restructuring.
   [[nodiscard]] std::vector<nlohmann::ordered_json> rows(int nodes) const;
 
@@ -50,6 +52,7 @@ class RestructuringCase {
   void keep(std::string_view way, Restructured what);
   void keep_exact(std::string_view way, const TornOn& torn, std::size_t from);
   Expected<void> follow(Follower& follower, const TornOn& torn, std::size_t advance);
+  /// Mean of "sparse" over that of the way, in the rounds that have both: side by side, since machines drift.
   [[nodiscard]] double sparse_over(std::string_view way) const;
 
   using ByWay = std::map<std::string, std::vector<Restructured>, std::less<>>;
