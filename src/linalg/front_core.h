@@ -3,7 +3,7 @@
 /// Inside of FrontTree: the fronts of one version and the direction in which they hand on.
 ///
 /// The tree of components has no up and down by nature: any component can be the last one, and every other then hands
-/// on to its neighbour on the way there. So the last one is put where the kept nodes are. Far from them nothing then
+/// on to its neighbour on the way there. So the last one is put where elements change. Far from there nothing then
 /// depends on a change, and only when the last component moves is the path between its two places factored again. With
 /// the last one fixed at the top separator every change would factor the largest fronts again, which in a plate are a
 /// good part of the whole.

@@ -5,6 +5,11 @@
 /// and Sorkine-Hornung 2020). Some nodes may be kept: they are not eliminated, and what is left on them is the Schur
 /// complement of all the rest (static condensation).
 ///
+/// Far from the change nothing is touched, not even the top of the tree, since fronts hand on towards what changed last
+/// (front_core.h): of a crack that runs through a plate of 20,000 nodes an advance factors a thousandth of it in the
+/// median and a thirtieth in the mean, the crossings of the largest separators included. Kept nodes are carried along
+/// those ways, which is nothing for the few that a hand holds and most of the work for a hundred.
+///
 /// A version never changes; `updated` makes the next one, which shares every front that is the same. So one version can
 /// be solved with while another thread makes the next, and going back costs nothing.
 
@@ -46,6 +51,7 @@ struct ElementChange {
   std::vector<std::int32_t> kept;     ///< the nodes to keep from now on (all of them, ascending)
 };
 
+/// What is not a number counts as not positive definite.
 enum class FrontOutcome { ok, not_positive_definite };
 
 class FrontTree {
