@@ -83,8 +83,7 @@ double angle_of_maximum(const Hoop& hoop) {
 /// What the tets of the ring say together.
 struct Ring {
   int tets = 0;
-  double volume = 0.0;    ///< m^3
-  double distance = 0.0;  ///< volume times distance, in mean edges
+  double volume = 0.0;  ///< m^3
   Vec3 stress = Vec3::Zero();
   Eigen::Matrix<double, kTerms, kTerms> normal = Eigen::Matrix<double, kTerms, kTerms>::Zero();
   Terms right = Terms::Zero();
@@ -93,7 +92,6 @@ struct Ring {
     const StressTerms terms = williams(angle, std::sqrt(edges));
     ++tets;
     volume += weight;
-    distance += weight * edges;
     stress += weight * of_tet;
     normal += weight * terms.transpose() * terms;
     right += weight * terms.transpose() * of_tet;
@@ -125,7 +123,7 @@ Judgement MaximumHoop::judge(const FrontSection& section, std::span<const TetStr
   Terms fit = fits ? Terms(factor.solve(ring.right)) : Terms::Zero();
   // The two terms that grow with the distance have taken what belongs to the plate; the tip's own are left.
   fit.tail<2>().setZero();
-  const double root = std::sqrt(ring.distance / ring.volume);
+  const double root = std::sqrt(kJudgedAt);
   const Vec3 mean = ring.stress / ring.volume;
   const auto hoop = [&](double angle) { return hoop_of(fits ? Vec3(williams(angle, root) * fit) : mean, angle); };
   const double angle = angle_of_maximum(hoop);

@@ -301,8 +301,11 @@ TEST(MaximumHoop, IsErdoganAndSihNextToASharpTip) {
     const auto tets = tets_around(tip_field(1000.0 * K_I, 1000.0 * K_II), kEdge);
     const Judgement judgement = make("maximum-hoop", settings_with(1.0, 1.0))->judge({}, tets);
     EXPECT_NEAR(turn_of(judgement, {}), erdogan_sih(K_I, K_II), 1e-5);  // the basis holds the field; a flat maximum
-    const double angle = judgement.direction[1] / judgement.direction[0];
-    EXPECT_TRUE(std::isfinite(angle));
+    // At half a mean edge: (2 pi r)^-1/2 cos(t/2) (K_I cos^2(t/2) - 3/2 K_II sin t).
+    const double t = erdogan_sih(K_I, K_II) * kDegree;
+    const double hoop = std::cos(t / 2.0) * (K_I * std::pow(std::cos(t / 2.0), 2) - 1.5 * K_II * std::sin(t));
+    const double expected = 1000.0 * hoop / std::sqrt(2.0 * std::numbers::pi * 0.5 * kEdge);
+    EXPECT_NEAR(judgement.value, expected, 1e-9 * expected);
   }
   EXPECT_NEAR(erdogan_sih(0.0, 1.0), -70.5288, 1e-4);
 }
