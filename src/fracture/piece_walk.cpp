@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -10,13 +11,44 @@
 namespace rhexis::fracture {
 namespace {
 
+/// By which walk each tet was met. Most walks meet a few hundred tets; one that goes through half of a large body gets
+/// room for all, since hashing would take most of its time.
+class Meetings {
+ public:
+  explicit Meetings(std::size_t tet_count) : tet_count_(tet_count) {}
+
+  /// The walk that met the tet before; none when `walk` is the first.
+  std::optional<std::size_t> meet(TetId tet, std::size_t walk) {
+    if (all_.empty() && few_.size() < kFew) {
+      const auto [at, is_new] = few_.try_emplace(tet, walk);
+      return is_new ? std::nullopt : std::optional(at->second);
+    }
+    if (all_.empty()) {
+      all_.assign(tet_count_, kNone);
+      for (const auto& [known, by] : few_) all_[known.index()] = by;
+    }
+    std::size_t& by = all_[tet.index()];
+    if (by != kNone) return by;
+    by = walk;
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr std::size_t kFew = 8192;
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  std::size_t tet_count_;
+  std::unordered_map<TetId, std::size_t> few_;  // looked up, and copied to what has an order
+  std::vector<std::size_t> all_;
+};
+
 /// Breadth-first walks, one from each seed, that become one where they meet.
 class Walks {
  public:
-  Walks(const mesh::TornMesh& body, const std::vector<TetId>& seeds) : body_(body), walks_(seeds.size()) {
+  Walks(const mesh::TornMesh& body, const std::vector<TetId>& seeds)
+      : body_(body), walks_(seeds.size()), met_(body.mesh().tet_count()) {
     for (std::size_t w = 0; w < seeds.size(); ++w) {
       walks_[w] = {w, {seeds[w]}, 0};
-      walk_of_.emplace(seeds[w], w);
+      met_.meet(seeds[w], w);
     }
   }
 
@@ -30,12 +62,12 @@ class Walks {
     for (std::int8_t k = 0; k < 4; ++k) {
       const TetId next = tet_across(body_, {tet, k});
       if (!next.valid()) continue;
-      const auto [at, is_new] = walk_of_.try_emplace(next, walk);
-      if (is_new) {
+      const std::optional<std::size_t> before = met_.meet(next, walk);
+      if (!before) {
         walks_[walk].tets.push_back(next);
         continue;
       }
-      const std::size_t other = own(at->second);
+      const std::size_t other = own(*before);
       if (other == walk) continue;
       walk = join(walk, other);
     }
@@ -66,7 +98,7 @@ class Walks {
 
   const mesh::TornMesh& body_;
   std::vector<Walk> walks_;
-  std::unordered_map<TetId, std::size_t> walk_of_;  // looked up only
+  Meetings met_;
 };
 
 /// Walks from seeds that were in one piece.

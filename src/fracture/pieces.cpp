@@ -31,26 +31,33 @@ std::vector<TetId> tets_beside(const mesh::TornMesh& body, const mesh::MeshEdit&
 }
 
 /// False when the edit is sure to have changed nothing that support depends on, pieces being what they were: the nodes
-/// that are held, or where pieces touch.
+/// that are held, and where pieces touch.
 bool touches_support(const mesh::TornMesh& body, const Pieces& before, const mesh::MeshEdit& edit,
                      const std::vector<std::uint8_t>& held) {
-  const auto matters = [&](NodeId node, std::int32_t piece) {
-    const std::size_t dof = 3 * node.index();
-    if ((held[dof] | held[dof + 1] | held[dof + 2]) != 0) return true;
-    const auto tets = body.tets_around(node);
-    return std::any_of(tets.begin(), tets.end(), [&](TetId tet) { return before.of_tet[tet.index()] != piece; });
+  // Every node of the edit with every piece that had or has a tet there: the tets that remain, and those removed.
+  std::vector<std::pair<NodeId, std::int32_t>> seen;
+  const auto see = [&](NodeId node) {
+    for (const TetId tet : body.tets_around(node)) seen.emplace_back(node, before.of_tet[tet.index()]);
   };
-  const auto any_matters = [&](TetId tet, const mesh::Tet& nodes) {
-    const std::int32_t piece = before.of_tet[tet.index()];
-    return std::any_of(nodes.begin(), nodes.end(), [&](NodeId node) { return matters(node, piece); });
+  const auto see_corner = [&](TetId tet, NodeId node) {
+    seen.emplace_back(node, before.of_tet[tet.index()]);
+    see(node);
   };
   for (const TetId tet : edit.removed)
-    if (any_matters(tet, body.mesh().tet(tet))) return true;
+    for (const NodeId node : body.mesh().tet(tet)) see_corner(tet, node);
   for (const mesh::RewiredTet& change : edit.rewired)
-    if (any_matters(change.tet, change.before) || any_matters(change.tet, change.after)) return true;
-  for (const mesh::MovedNode& move : edit.moved)
-    for (const TetId tet : body.tets_around(move.node))
-      if (matters(move.node, before.of_tet[tet.index()])) return true;
+    for (std::size_t k = 0; k < 4; ++k) {
+      see_corner(change.tet, change.before[k]);
+      see_corner(change.tet, change.after[k]);
+    }
+  for (const mesh::MovedNode& move : edit.moved) see(move.node);
+  std::sort(seen.begin(), seen.end());
+  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const std::size_t dof = 3 * seen[i].first.index();
+    if ((held[dof] | held[dof + 1] | held[dof + 2]) != 0) return true;
+    if (i > 0 && seen[i].first == seen[i - 1].first) return true;
+  }
   return false;
 }
 
