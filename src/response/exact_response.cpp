@@ -7,6 +7,16 @@
 #include "base/clock.h"
 
 namespace rhexis::response {
+namespace {
+
+/// What a force has beyond the directions that are known, below this part of it, is rounding.
+constexpr double kSameDirection = 1e-14;
+
+const linalg::FrontTree::Forward* known(const linalg::FrontTree::Forward& forward) {
+  return forward.gram.cols() > 0 ? &forward : nullptr;
+}
+
+}  // namespace
 
 /// The next window, made beside the caller from a copy of the mesh, since the caller edits his.
 struct ExactResponse::Preparation {
@@ -42,12 +52,14 @@ ExactResponse::~ExactResponse() = default;
 std::unique_ptr<ExactResponse> ExactResponse::make(const mesh::TornMesh& mesh, ExactSettings settings,
                                                    std::span<const Focus> focus) {
   std::unique_ptr<ExactResponse> out(new ExactResponse(mesh, std::move(settings)));
-  const auto window = std::make_shared<const Window>(mesh, focus, out->settings_.window);
   Halves halves = make_halves(mesh, out->model_);
+  out->whole_flops_ = halves.outside->flops_made();
+  const auto window = std::make_shared<const Window>(out->place_window(focus, mesh));
   if (!window->is_empty() && halves.is_stable()) halves = move_window(mesh, out->model_, halves, window, {});
   if (!out->adopt(std::move(halves))) return nullptr;
   out->energy_at_first_ = out->potential_energy({});
-  if (out->settings_.in_background) out->preparation_ = std::make_unique<Preparation>(mesh);
+  if (out->settings_.in_background && out->whole_flops_ >= out->settings_.window.fewest_flops)
+    out->preparation_ = std::make_unique<Preparation>(mesh);
   return out;
 }
 
@@ -57,6 +69,11 @@ void ExactResponse::grasp(std::span<const NodeId> nodes) {
                  mesh_.mesh().node_count());
   }
   held_ = solve_held_nodes(mesh_, model_, halves_, rim_, {nodes.begin(), nodes.end()}, held_);
+  known_.any = false;
+}
+
+Window ExactResponse::place_window(std::span<const Focus> focus, const mesh::TornMesh& mesh) const {
+  return whole_flops_ < settings_.window.fewest_flops ? Window() : Window(mesh, focus, settings_.window);
 }
 
 FollowReport ExactResponse::follow(const mesh::MeshEdit& edit, std::span<const Focus> focus) {
@@ -104,7 +121,7 @@ bool ExactResponse::make_next(const Followed& what, std::span<const Focus> focus
     next = follow_inside(mesh_, model_, halves_, what);
     return false;
   }
-  auto window = std::make_shared<const Window>(mesh_, focus, settings_.window);
+  auto window = std::make_shared<const Window>(place_window(focus, mesh_));
   const bool moved = !window->is_empty() || !present.is_empty();
   next = move_window(mesh_, model_, halves_, std::move(window), what);
   return moved;
@@ -142,7 +159,7 @@ void ExactResponse::prepare(std::span<const Focus> focus) {
   if (preparation_->task.under_way() || !is_half_way) return;
   const auto work = [this, before = halves_, where = std::vector<Focus>(focus.begin(), focus.end())] {
     const mesh::TornMesh& mirror = preparation_->mirror;
-    auto window = std::make_shared<const Window>(mirror, where, settings_.window);
+    auto window = std::make_shared<const Window>(place_window(where, mirror));
     preparation_->made = move_window(mirror, model_, before, std::move(window), {});
   };
   preparation_->task.start(work);
@@ -155,25 +172,15 @@ bool ExactResponse::adopt(Halves next) {
   halves_ = std::move(next);
   std::swap(rim_, next_rim_);
   held_ = solve_held_nodes(mesh_, model_, halves_, rim_, held_.nodes, held_);
+  known_.any = false;
   return true;
 }
 
-/// On the rim, by the loads and the forces; and from there into the two halves.
-void ExactResponse::solve(const VectorX& held_forces, bool outside_too) {
-  RHEXIS_CHECK(held_forces.size() == held_.rest.size(), "{} forces on {} held dofs", held_forces.size(),
-               held_.rest.size());
-  VectorX x = rim_.load();
+VectorX ExactResponse::solve_rim(const VectorX& held_forces, double loads) const {
+  VectorX x = loads * rim_.load();
   x.noalias() += held_.at_rim * held_forces;
   rim_.backward(x);
-  const auto known = [](const linalg::FrontTree::Forward& forward) {
-    return forward.gram.cols() > 0 ? &forward : nullptr;
-  };
-  if (halves_.inside) {
-    halves_.inside->backward(rim_.at_inside(x), known(held_.inside), held_forces, 1.0, x_inside_);
-  }
-  if (outside_too) {
-    halves_.outside->backward(rim_.at_outside(x), known(held_.outside), held_forces, 1.0, x_outside_);
-  }
+  return x;
 }
 
 bool ExactResponse::is_solved_inside(NodeId node) const {
@@ -182,34 +189,86 @@ bool ExactResponse::is_solved_inside(NodeId node) const {
                      [&](TetId tet) { return mesh_.is_solved(tet) && halves_.window->holds(tet); });
 }
 
-/// With what is prescribed; zero for a node out of the solve.
-Vec3 ExactResponse::displacement_of(NodeId node) const {
-  const bool inside = is_solved_inside(node);
+bool ExactResponse::is_in_solve(NodeId node) const {
   const auto around = mesh_.tets_around(node);
-  if (!inside && std::none_of(around.begin(), around.end(), [&](TetId tet) { return mesh_.is_solved(tet); })) {
-    return Vec3::Zero();
+  return std::any_of(around.begin(), around.end(), [&](TetId tet) { return mesh_.is_solved(tet); });
+}
+
+/// Without what is prescribed, which the trees leave at zero.
+void ExactResponse::solve_at(std::span<const NodeId> nodes, const VectorX& held_forces, double loads, VectorX& out) {
+  const VectorX x_rim = solve_rim(held_forces, loads);
+  std::vector<std::int32_t> inside;
+  std::vector<std::int32_t> outside;
+  for (const NodeId node : nodes) {
+    if (is_in_solve(node)) (is_solved_inside(node) ? inside : outside).push_back(node.value());
   }
-  Vec3 u = (inside ? x_inside_ : x_outside_).segment<3>(3 * Eigen::Index{node.value()});
-  // The trees leave what is prescribed at zero.
-  return u + model_.value.segment<3>(3 * Eigen::Index{mesh_.original(node).value()});
+  if (!inside.empty()) {
+    halves_.inside->backward_at(inside, rim_.at_inside(x_rim), known(held_.inside), held_forces, loads, x_inside_);
+  }
+  if (!outside.empty()) {
+    halves_.outside->backward_at(outside, rim_.at_outside(x_rim), known(held_.outside), held_forces, loads, x_outside_);
+  }
+  out.setZero(static_cast<Eigen::Index>(3 * nodes.size()));
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (!is_in_solve(nodes[i])) continue;
+    const VectorX& x = is_solved_inside(nodes[i]) ? x_inside_ : x_outside_;
+    out.segment<3>(static_cast<Eigen::Index>(3 * i)) = x.segment<3>(3 * Eigen::Index{nodes[i].value()});
+  }
 }
 
 void ExactResponse::displacement(std::span<const NodeId> nodes, const VectorX& held_forces, VectorX& out) {
-  const bool inside_alone =
-      std::all_of(nodes.begin(), nodes.end(), [&](NodeId node) { return is_solved_inside(node); });
-  solve(held_forces, !inside_alone);
-  out.resize(static_cast<Eigen::Index>(3 * nodes.size()));
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    out.segment<3>(static_cast<Eigen::Index>(3 * i)) = displacement_of(nodes[i]);
+  RHEXIS_CHECK(held_forces.size() == held_.rest.size(), "{} forces on {} held dofs", held_forces.size(),
+               held_.rest.size());
+  const auto dofs = static_cast<Eigen::Index>(3 * nodes.size());
+  if (!known_.any || !std::equal(nodes.begin(), nodes.end(), known_.nodes.begin(), known_.nodes.end())) {
+    known_.nodes.assign(nodes.begin(), nodes.end());
+    known_.force.resize(held_forces.size(), 0);
+    known_.moved.resize(dofs, 0);
+    solve_at(nodes, VectorX::Zero(held_forces.size()), 1.0, known_.rest);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (is_in_solve(nodes[i])) known_.rest.segment<3>(static_cast<Eigen::Index>(3 * i)) += prescribed(nodes[i]);
+    }
+    known_.any = true;
   }
+  out = known_.rest;
+  VectorX left = held_forces;
+  const auto use = [&](Eigen::Index column, double part) {
+    left -= part * known_.force.col(column);
+    out += part * known_.moved.col(column);
+  };
+  for (Eigen::Index column = 0; column < known_.force.cols(); ++column) use(column, known_.force.col(column).dot(left));
+  // What is left by rounding alone is no new direction: it would only be noise.
+  if (!(left.norm() > kSameDirection * held_forces.norm())) return;
+  VectorX moved;
+  const VectorX direction = left.normalized();
+  solve_at(nodes, direction, 0.0, moved);
+  const Eigen::Index column = known_.force.cols();
+  known_.force.conservativeResize(Eigen::NoChange, column + 1);
+  known_.moved.conservativeResize(Eigen::NoChange, column + 1);
+  known_.force.col(column) = direction;
+  known_.moved.col(column) = moved;
+  use(column, left.norm());
 }
 
 void ExactResponse::whole_displacement(const VectorX& held_forces, VectorX& out) {
-  solve(held_forces, true);
-  out.resize(static_cast<Eigen::Index>(3 * mesh_.mesh().node_count()));
-  for (std::size_t i = 0; i < mesh_.mesh().node_count(); ++i) {
-    out.segment<3>(static_cast<Eigen::Index>(3 * i)) = displacement_of(NodeId(i));
+  RHEXIS_CHECK(held_forces.size() == held_.rest.size(), "{} forces on {} held dofs", held_forces.size(),
+               held_.rest.size());
+  const VectorX x_rim = solve_rim(held_forces, 1.0);
+  halves_.outside->backward(rim_.at_outside(x_rim), known(held_.outside), held_forces, 1.0, x_outside_);
+  if (halves_.inside) {
+    halves_.inside->backward(rim_.at_inside(x_rim), known(held_.inside), held_forces, 1.0, x_inside_);
   }
+  out.setZero(static_cast<Eigen::Index>(3 * mesh_.mesh().node_count()));
+  for (std::size_t i = 0; i < mesh_.mesh().node_count(); ++i) {
+    const NodeId node(i);
+    if (!is_in_solve(node)) continue;
+    const auto at = static_cast<Eigen::Index>(3 * i);
+    out.segment<3>(at) = (is_solved_inside(node) ? x_inside_ : x_outside_).segment<3>(at) + prescribed(node);
+  }
+}
+
+Vec3 ExactResponse::prescribed(NodeId node) const {
+  return model_.value.segment<3>(3 * Eigen::Index{mesh_.original(node).value()});
 }
 
 /// With b what the loads leave to the free dofs and P the held nodes: u = K^-1 (b + P a), and
@@ -232,7 +291,7 @@ std::size_t ExactResponse::memory_bytes() const {
   for (const linalg::FrontTree::Forward* forward : {&held_.outside, &held_.inside}) {
     for (const Eigen::MatrixXd& y : forward->y) bytes += sizeof(double) * static_cast<std::size_t>(y.size());
   }
-  return bytes + sizeof(double) * static_cast<std::size_t>(x_inside_.size() + x_outside_.size());
+  return bytes + sizeof(double) * static_cast<std::size_t>(x_inside_.size() + x_outside_.size() + known_.moved.size());
 }
 
 }  // namespace rhexis::response

@@ -59,9 +59,12 @@ class ExactResponse final : public Response {
   bool take_up(const mesh::MeshEdit& edit, std::span<const Focus> focus, Halves& next, FollowReport& report);
   void prepare(std::span<const Focus> focus);
   bool adopt(Halves next);
-  void solve(const VectorX& held_forces, bool outside_too);
+  [[nodiscard]] Window place_window(std::span<const Focus> focus, const mesh::TornMesh& mesh) const;
+  [[nodiscard]] VectorX solve_rim(const VectorX& held_forces, double loads) const;
+  void solve_at(std::span<const NodeId> nodes, const VectorX& held_forces, double loads, VectorX& out);
   [[nodiscard]] bool is_solved_inside(NodeId node) const;
-  [[nodiscard]] Vec3 displacement_of(NodeId node) const;
+  [[nodiscard]] bool is_in_solve(NodeId node) const;
+  [[nodiscard]] Vec3 prescribed(NodeId node) const;
   [[nodiscard]] double potential_energy(const VectorX& held_forces) const;
 
   const mesh::TornMesh& mesh_;
@@ -72,7 +75,18 @@ class ExactResponse final : public Response {
   RimSystem next_rim_;  ///< of the version before, whose memory the next one takes
   HeldNodes held_;
   double energy_at_first_ = 0.0;
-  VectorX x_inside_, x_outside_;              ///< work: the last solution in either half
+  /// What some nodes do under the loads and under forces on the held nodes, as far as it has been asked for: in one
+  /// topology everything is linear, and the forces of a contact have three dimensions at most.
+  struct Known {
+    std::vector<NodeId> nodes;
+    VectorX rest;           ///< m, 3 per node
+    Eigen::MatrixXd force;  ///< columns of length 1
+    Eigen::MatrixXd moved;  ///< m/N, by each of them
+    bool any = false;
+  };
+  Known known_;
+  double whole_flops_ = 0.0;                  ///< of the first factor
+  VectorX x_inside_, x_outside_;              ///< work
   std::unique_ptr<Preparation> preparation_;  ///< null without background; last, so that it ends first
 };
 

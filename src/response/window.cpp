@@ -6,9 +6,6 @@
 namespace rhexis::response {
 namespace {
 
-/// What the local object reaches from the middle of its front, sideways of the front.
-double reach(const Focus& focus) { return std::hypot(focus.radius, focus.half_length); }
-
 Vec3 centroid(const mesh::TetMesh& mesh, TetId tet) {
   const auto x = mesh::corners(mesh, tet);
   return 0.25 * (x[0] + x[1] + x[2] + x[3]);
@@ -23,7 +20,7 @@ double Window::Capsule::distance(const Vec3& x) const {
   return (x - from - t * along).norm();
 }
 
-Window::Window(const mesh::TornMesh& body, std::span<const Focus> focus, const WindowShape& shape) {
+Window::Window(const mesh::TornMesh& body, std::span<const Focus> focus, const WindowShape& shape) : edit_(shape.edit) {
   for (const Focus& each : focus) {
     const double side = std::hypot(shape.side * each.radius, each.half_length);
     capsules_.push_back({each.centre - shape.behind * each.radius * each.direction,
@@ -66,9 +63,9 @@ Window::Window(const mesh::TornMesh& body, std::span<const Focus> focus, const W
 }
 
 const Window::Capsule* Window::capsule_of(const Focus& focus) const {
-  const auto found = std::find_if(capsules_.begin(), capsules_.end(), [&](const Capsule& c) {
-    return c.distance(focus.centre) + reach(focus) <= c.radius;
-  });
+  const double reach = std::hypot(edit_ * focus.radius, focus.half_length);
+  const auto found = std::find_if(capsules_.begin(), capsules_.end(),
+                                  [&](const Capsule& c) { return c.distance(focus.centre) + reach <= c.radius; });
   return found == capsules_.end() ? nullptr : &*found;
 }
 

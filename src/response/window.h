@@ -14,8 +14,11 @@ namespace rhexis::response {
 
 /// Lengths in radii of the local object. The defaults were measured: docs/exact-response.md.
 struct WindowShape {
-  double side = 1.25;   ///< half the width; more than 1, so that the local object is inside with its neighbours
-  double ahead = 1.5;   ///< from the front to the centre of the far end
+  /// A body whose whole factor takes fewer operations does better without a window.
+  double fewest_flops = 3e10;
+  double side = 1.25;   ///< half the width
+  double edit = 1.0;    ///< what an edit reaches from the middle of its front; less than `side`
+  double ahead = 2.0;   ///< from the front to the centre of the far end
   double behind = 0.0;  ///< from the front to the centre of the near end
   /// A window of more than this part of the tets in the solve does not pay, and none is made.
   double largest_part = 0.4;
@@ -38,7 +41,7 @@ class Window {
   /// Nodes of tets inside and of tets in the solve outside, when it was placed; ascending.
   [[nodiscard]] const std::vector<std::int32_t>& rim() const { return rim_; }
 
-  /// The local object of the focus lies inside, or the window is empty.
+  /// What the next edit at the focus will reach lies inside, as far as one can tell, or the window is empty.
   [[nodiscard]] bool has_room(const Focus& focus) const;
   /// The focus has gone half of the way on which it had room when the window was placed.
   [[nodiscard]] bool is_half_way(const Focus& focus) const;
@@ -55,6 +58,7 @@ class Window {
   };
   [[nodiscard]] const Capsule* capsule_of(const Focus& focus) const;
 
+  double edit_ = 0.0;
   std::vector<Capsule> capsules_;
   std::vector<std::uint8_t> holds_;   ///< per tet
   std::vector<std::uint8_t> on_rim_;  ///< per node; nodes appended later are not

@@ -19,6 +19,7 @@ ExactSettings settings_for(const TornCase& body, double ahead, bool in_backgroun
   out.body = body.elastic;
   out.window.ahead = ahead;
   out.window.largest_part = 0.6;
+  out.window.fewest_flops = 0.0;
   out.in_background = in_background;
   return out;
 }
@@ -358,6 +359,28 @@ TEST(ExactResponse, FollowsSeveralCracksAtATime) {
     EXPECT_LT(difference(body, *response, held, foci()[0], scale, energy).largest(), kExact);
   }
   EXPECT_GT(stays, 0);
+}
+
+TEST(ExactResponse, KnowsTheDisplacementUnderEveryForce) {
+  TornCase body = plate_case(1000);
+  const Focus focus = body.focus(2.0);
+  const auto response = ExactResponse::make(body.cut.body, settings_for(body, 1.0), std::span(&focus, 1));
+  const std::vector<NodeId> held = corner_and_far(body);
+  response->grasp(held);
+  TornBodyOracle oracle(body.cut.body, body.elastic);
+  const std::vector<NodeId> all = body.all_nodes();
+  const std::vector<NodeId> some(all.begin() + 100, all.begin() + 200);
+  for (int k = 0; k < 20; ++k) {  // more than there are directions, some of them again, and none
+    VectorX force = VectorX::Zero(9);
+    for (int i = 0; i < 9 && k > 0; ++i) force[i] = std::sin(1.0 + i * (k % 12)) * (k % 3 == 0 ? 1e-6 : 1.0);
+    const VectorX expected = oracle.displacement(held, force);
+    for (const std::vector<NodeId>& nodes : {some, k % 5 == 0 ? all : some}) {
+      VectorX u;
+      response->displacement(nodes, force, u);
+      const VectorX at = TornBodyOracle::at(nodes, expected);
+      EXPECT_LT((u - at).norm(), kExact * at.norm());
+    }
+  }
 }
 
 TEST(ExactResponse, TakesNoMoreMemoryTheLongerItTears) {
