@@ -122,6 +122,10 @@ Expected<InitialCrack> make_crack(const Vec3& from, const Vec3& to, const Vec3& 
   if (!(way.norm() > kNothing * size))
     return fail("the crack has no length", "'from' and 'to' lie apart, not only along 'through'");
   const Vec3 direction = way.normalized();
+  // The normal decides the side of nodes that lie on the plane. Towards the middle of the body it mirrors with the
+  // body.
+  const Vec3 middle = 0.5 * (surroundings.box().from + surroundings.box().to);
+  if (tangent.cross(direction).dot(middle - to) < -kNothing * size) tangent = -tangent;
 
   InitialCrack out;
   out.cracks = fronts_on_line(to, tangent, direction, surroundings);

@@ -172,9 +172,12 @@ TEST_P(EveryCriterion, TheCrackMirrorsWithTheBody) {
     // Rounding of the solve, through directions of principal stress, onto lengths of a tenth of a metre.
     EXPECT_LT((Vec3(0.24 - b.x(), b.y(), b.z()) - a).head<2>().norm(), 1e-9) << k;
   }
+  // Nodes apart by 1e-9 m, of edges of 1e-2 m, change shapes and with them forces by no more than their ratio.
+  double most = 0.0;
+  for (const Vec3& force : trace.force) most = std::max(most, force.norm());
   for (std::size_t k = 0; k < trace.force.size(); ++k) {
     const Vec3 back(-other_trace.force[k].x(), other_trace.force[k].y(), other_trace.force[k].z());
-    EXPECT_LT((back - trace.force[k]).norm(), 1e-7) << k;
+    EXPECT_LT((back - trace.force[k]).norm(), 1e-7 * most) << k;
   }
 }
 
