@@ -21,6 +21,8 @@ struct InitialCrack {
 /// The scene's [[crack]]: the plane from `from` to `to` (m), all the way through the body along `through` (any length).
 /// A front stands where the line through `to` passes through the body, one crack per separate stretch; and where the
 /// one through `from` does, when `from` is well inside the body (a slit with two tips). On a plate `through` must be z.
+/// The normal points towards the middle of the body's box where it is to one side: it mirrors with the body, and so
+/// does the path.
 /// Errors: no way between the points, `through` along it, no front in the body.
 [[nodiscard]] Expected<InitialCrack> make_crack(const Vec3& from, const Vec3& to, const Vec3& through,
                                                 const Surroundings& surroundings);
