@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/generate.h"
 #include "tests/fracture/cut_support.h"
 #include "tests/support/kuhn_box.h"
 
@@ -156,49 +155,6 @@ TEST(KeepNodes, ATetIsNotFlattened) {
   for (std::size_t node = 0; node < 3; ++node) on_plane += std::abs(cut.body.mesh().nodes[node][2]) < 1e-15 ? 1 : 0;
   EXPECT_EQ(on_plane, 3);
   EXPECT_LT(cut.body.mesh().nodes[3][2], 0.9);  // but it has come nearer
-}
-
-/// The mesh and a surface in the mirror x -> -x; numbers of nodes and tets stay.
-mesh::TetMesh mirrored(mesh::TetMesh mesh) {
-  for (Vec3& x : mesh.nodes) x[0] = -x[0];
-  for (mesh::Tet& tet : mesh.tets) std::swap(tet[2], tet[3]);
-  return mesh;
-}
-
-CutSurface mirrored(CutSurface surface) {
-  for (CutSurface::Triangle& t : surface.triangles) {
-    for (Vec3* corner : {&t.a, &t.b, &t.c}) (*corner)[0] = -(*corner)[0];
-    std::swap(t.b, t.c);  // what was above stays above
-  }
-  return surface;
-}
-
-TEST(KeepNodes, MirrorsWhenTheMeshIsMirrored) {
-  const mesh::TetMesh bar = mesh::make_bar({Vec3(3.0, 2.0, 2.0)}, 600).value();
-  Dice dice(7);
-  int compared = 0;
-  for (int trial = 0; trial < 20; ++trial) {
-    CutBody cut(bar);
-    CutBody image(mirrored(bar));
-    const Vec3 at = dice.inside(mesh::bounding_box(bar));
-    const Vec3 across = dice.direction();
-    const Vec3 along = dice.direction().cross(across).normalized();
-    const CutSurface surface = strip({at - 4.0 * across, at + 4.0 * across},
-                                     {at - 4.0 * across + 1.5 * along, at + 4.0 * across + 1.2 * along});
-    const Incision one = cut.incise(surface);
-    const Incision other = image.incise(mirrored(surface));
-    EXPECT_EQ(one.edit.removed, other.edit.removed);
-    EXPECT_EQ(one.nodes_off_plane, other.nodes_off_plane);
-    ASSERT_EQ(one.edit.moved.size(), other.edit.moved.size());
-    for (std::size_t i = 0; i < one.edit.moved.size(); ++i) {
-      const Vec3 to = other.edit.moved[i].to;
-      EXPECT_EQ(one.edit.moved[i].node, other.edit.moved[i].node);
-      // A projection is a handful of operations on numbers of size 4.
-      EXPECT_LT((one.edit.moved[i].to - Vec3(-to[0], to[1], to[2])).norm(), 1e-14);
-      ++compared;
-    }
-  }
-  EXPECT_GT(compared, 200);
 }
 
 }  // namespace

@@ -106,34 +106,53 @@ TEST(Pieces, SupportsAndNeighboursAddUp) {
   EXPECT_EQ(find_pieces(cut.body, cut.held).supported, (std::vector<std::uint8_t>{1, 1}));
 }
 
-// A tower of boxes, each on three corners of the one below, which is no face of either; the lowest box has the highest
-// numbers. On two corners the upper boxes rock.
+/// A tower of boxes, each on `corners` corners of the one below, which is no face of either; the lowest box has the
+/// highest numbers, and stands at z = 0.
+mesh::TetMesh tower(std::size_t corners) {
+  rhexis::test::KuhnGrid grid;
+  grid.cells = {2, 2, 3};
+  grid.jitter = Vec3::Zero();
+  const mesh::TetMesh box = rhexis::test::make_kuhn_box(grid);  // node (i, j, k) is 4 (3 i + j) + k
+  const std::array<std::size_t, 3> corner{0, 4 * 2, 4 * 6};     // at the bottom; 3 more at the top
+  mesh::TetMesh tower;
+  for (std::size_t level = 3; level-- > 0;) {
+    const std::size_t offset = tower.node_count();
+    for (const Vec3& x : box.nodes) tower.nodes.push_back(x + static_cast<double>(3 * level) * Vec3::UnitZ());
+    for (mesh::Tet tet : box.tets) {
+      for (NodeId& node : tet) {
+        const auto at = std::find(corner.begin(), corner.begin() + corners, node.index() - 3);
+        // The top corners of this box are the bottom corners of the one above, which has come before.
+        node = at != corner.begin() + corners && level < 2 ? NodeId(offset - box.node_count() + *at)
+                                                           : NodeId(offset + node.index());
+      }
+      tower.tets.push_back(tet);
+    }
+  }
+  return tower;
+}
+
 TEST(Pieces, SupportIsHandedOn) {
   for (const std::size_t corners : {2U, 3U}) {
-    rhexis::test::KuhnGrid grid;
-    grid.cells = {2, 2, 1};
-    grid.jitter = Vec3::Zero();
-    const mesh::TetMesh box = rhexis::test::make_kuhn_box(grid);  // node (i, j, k) is 2 (3 i + j) + k
-    const std::array<std::size_t, 3> corner{0, 2 * 2, 2 * 6};
-    mesh::TetMesh tower;
-    for (std::size_t level = 3; level-- > 0;) {
-      const std::size_t offset = tower.node_count();
-      for (const Vec3& x : box.nodes) tower.nodes.push_back(x + static_cast<double>(level) * Vec3::UnitZ());
-      for (mesh::Tet tet : box.tets) {
-        for (NodeId& node : tet) {
-          const auto at = std::find(corner.begin(), corner.begin() + corners, node.index() - 1);
-          // The top corners of this box are the bottom corners of the one above, which has come before.
-          node = at != corner.begin() + corners && level < 2 ? NodeId(offset - box.node_count() + *at)
-                                                             : NodeId(offset + node.index());
-        }
-        tower.tets.push_back(tet);
-      }
-    }
-    CutBody cut(tower);
+    CutBody cut(tower(corners));
     cut.hold([](const Vec3& x) { return x[2] == 0.0; });
     EXPECT_EQ(find_pieces(cut.body, cut.held).supported,
               corners == 3 ? (std::vector<std::uint8_t>{1, 1, 1}) : (std::vector<std::uint8_t>{0, 0, 1}));
   }
+}
+
+// All tets at a corner that two boxes share, of both, in one edit: what hung on it is loose, though none of the tets
+// that remain were near.
+TEST(Pieces, ANodeThatTwoPiecesLoseAtOnceIsMissed) {
+  CutBody cut(tower(3));
+  cut.hold([](const Vec3& x) { return x[2] == 0.0; });
+  Pieces pieces = find_pieces(cut.body, cut.held);
+  mesh::MeshEdit edit;
+  const auto tets = cut.body.tets_around(NodeId(0));  // the first bottom corner of the top box
+  edit.removed.assign(tets.begin(), tets.end());
+  cut.apply(edit);
+  update_pieces(pieces, cut.body, edit, cut.held);
+  EXPECT_EQ(pieces.supported, (std::vector<std::uint8_t>{0, 1, 1}));
+  EXPECT_TRUE(pieces == find_pieces(cut.body, cut.held));
 }
 
 }  // namespace
