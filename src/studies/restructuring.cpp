@@ -61,8 +61,9 @@ Expected<ordered_json> run_restructuring(const RestructuringOptions& options, co
       RestructuringCase one(*plate, static_cast<TearMode>(m), options.ways);
       const Stopwatch watch;
       for (int round = 0; round < kMostRounds && goes_on; ++round) {
-        const auto told = [&] {
-          const double part = std::min(1.0, watch.seconds() / options.seconds_per_case);
+        const auto told = [&](double of_round) {
+          const double by_rounds = (round + of_round) / one.least_rounds();
+          const double part = std::min({1.0, by_rounds, watch.seconds() / options.seconds_per_case});
           return progress(advancement.fraction(nodes, part),
                           fmt::format("{} nodes, {}, round {}", nodes, kTearModes[m], round + 1));
         };

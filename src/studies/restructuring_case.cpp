@@ -129,7 +129,7 @@ Expected<void> RestructuringCase::follow(Follower& follower, const TornOn& torn,
   return {};
 }
 
-Expected<bool> RestructuringCase::run_round(const std::function<bool()>& told) {
+Expected<bool> RestructuringCase::run_round(const std::function<bool(double)>& told) {
   // Both exact ways take turns, when both are wanted.
   ++round_;
   const bool all_work = wants("exact") && wants("exact-all-work") ? round_ % 2 == 1 : wants("exact-all-work");
@@ -146,7 +146,7 @@ Expected<bool> RestructuringCase::run_round(const std::function<bool()>& told) {
       follower.take(torn->body().history()[advance + 1]);
       if (Expected<void> done = follow(follower, *torn, advance); !done) return fail(std::move(done.error()));
     }
-    if (!told()) return false;
+    if (!told(torn->part_done())) return false;
   }
   return true;
 }

@@ -36,8 +36,8 @@ class RestructuringCase {
       : plate_(plate), mode_(mode), ways_(std::move(ways)) {}
 
   /// Tears the plate from its start to its end, once, by one of the exact ways: they take turns. `told` after each
-  /// block of advances; false stops. Errors: a torn body that is not stable.
-  Expected<bool> run_round(const std::function<bool()>& told);
+  /// block of advances, with the part of the round that is done; false stops. Errors: a torn body that is not stable.
+  Expected<bool> run_round(const std::function<bool(double)>& told);
 
   /// Rounds until every way has been timed once.
   [[nodiscard]] int least_rounds() const { return wants("exact") && wants("exact-all-work") ? 2 : 1; }

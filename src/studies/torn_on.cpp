@@ -47,6 +47,11 @@ void TornOn::step() {
             std::all_of(cracks.begin(), cracks.end(), [](const fracture::Crack& crack) { return crack.finished; });
 }
 
+double TornOn::part_done() const {
+  if (at_end_) return 1.0;
+  return static_cast<double>(step_) / (mode_ == TearMode::imposed ? kImposedAdvances : kTicks);
+}
+
 double TornOn::local_radius(const session::AdvanceRecord& after) const {
   return std::max(session_->settings().local_radius, after.length);
 }

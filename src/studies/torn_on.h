@@ -33,6 +33,8 @@ class TornOn {
   /// At least `count` more advances, all of a tick; fewer when the tearing has come to its end. Added to advances().
   void tear_on(std::size_t count);
   [[nodiscard]] bool at_end() const { return at_end_; }
+  /// Of the whole tearing, in [0, 1].
+  [[nodiscard]] double part_done() const;
 
   /// Without the crack of the start.
   [[nodiscard]] const std::vector<TimedAdvance>& advances() const { return advances_; }

@@ -21,8 +21,10 @@ TEST(TornOn, ImposedAdvancesAreThoseOfTheThesis) {
   torn->tear_on(1);
   EXPECT_EQ(torn->advances().size(), 1U);
   EXPECT_FALSE(torn->at_end());
+  EXPECT_DOUBLE_EQ(torn->part_done(), 0.5);
   torn->tear_on(5);
   EXPECT_TRUE(torn->at_end());
+  EXPECT_DOUBLE_EQ(torn->part_done(), 1.0);
   ASSERT_EQ(torn->advances().size(), 2U);
   double y = 0.06;
   for (const TimedAdvance& advance : torn->advances()) {
