@@ -5,6 +5,7 @@
 /// more, and its children are the components of the pieces that it separates.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "linalg/front_tree.h"
@@ -34,7 +35,9 @@ struct Dissection {
 /// Whether any dof of the node is free.
 [[nodiscard]] bool has_unknowns(const ElementSource& elements, std::int32_t node);
 
-/// Nodes in `kept` are left out of the cutting; their home is the root.
-[[nodiscard]] Dissection dissect(const ElementSource& elements, const std::vector<std::int32_t>& kept);
+/// Nodes in `kept` are left out of the cutting; their home is the root. A separator is one of small weight: per node,
+/// positive; empty: all 1.
+[[nodiscard]] Dissection dissect(const ElementSource& elements, const std::vector<std::int32_t>& kept,
+                                 std::span<const std::int32_t> weight);
 
 }  // namespace rhexis::linalg

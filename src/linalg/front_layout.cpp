@@ -17,8 +17,9 @@ void sort_unique(auto& list) {
 
 }  // namespace
 
-FrontLayout::FrontLayout(const ElementSource& elements, const std::vector<std::int32_t>& kept) {
-  Dissection cut = dissect(elements, kept);
+FrontLayout::FrontLayout(const ElementSource& elements, const std::vector<std::int32_t>& kept,
+                         std::span<const std::int32_t> weight) {
+  Dissection cut = dissect(elements, kept, weight);
   tree_ = std::make_shared<const ComponentTree>(std::move(cut.tree));
   places_.resize(cut.home.size(), {});
   for (std::size_t i = 0; i < cut.home.size(); ++i) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "linalg/front_array.h"
@@ -31,7 +32,9 @@ struct LayoutChange {
 /// Always: the component of an element is, or lies below, the homes of its nodes; these lie on one path to the root.
 class FrontLayout {
  public:
-  FrontLayout(const ElementSource& elements, const std::vector<std::int32_t>& kept);
+  /// `weight` as of FrontTree::make.
+  FrontLayout(const ElementSource& elements, const std::vector<std::int32_t>& kept,
+              std::span<const std::int32_t> weight);
 
   LayoutChange apply(const ElementSource& elements, const ElementChange& change);
 

@@ -71,8 +71,9 @@ std::vector<std::int32_t> components_at(const FrontLayout& layout, const std::ve
 FrontTree::FrontTree(std::unique_ptr<const Core> core) : core_(std::move(core)) {}
 FrontTree::~FrontTree() = default;
 
-std::shared_ptr<const FrontTree> FrontTree::make(const ElementSource& elements, const std::vector<std::int32_t>& kept) {
-  auto core = std::make_unique<Core>(FrontLayout(elements, kept));
+std::shared_ptr<const FrontTree> FrontTree::make(const ElementSource& elements, const std::vector<std::int32_t>& kept,
+                                                 std::span<const std::int32_t> weight) {
+  auto core = std::make_unique<Core>(FrontLayout(elements, kept, weight));
   core->null_pivot = null_pivot(3 * elements.node_count());
   core->set_kept(kept);
   core->direction = direct(core->layout.tree(), core->layout.tree().root());

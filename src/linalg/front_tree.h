@@ -58,9 +58,11 @@ class FrontTree {
  public:
   /// Orders by nested dissection and factors everything, on all threads. Nodes in `kept` (ascending) must stay kept in
   /// every later version; what is kept only for a time is named in ElementChange::kept. A node without an active
-  /// element is left out.
+  /// element is left out. `weight`, per node (empty: all 1): how dear the node is in a separator. An update is dear
+  /// when what changes lies along a large separator, cheap when it lies across: nodes where changes will come get more.
   [[nodiscard]] static std::shared_ptr<const FrontTree> make(const ElementSource& elements,
-                                                             const std::vector<std::int32_t>& kept);
+                                                             const std::vector<std::int32_t>& kept,
+                                                             std::span<const std::int32_t> weight = {});
   /// The next version. `elements` as after the change.
   [[nodiscard]] std::shared_ptr<const FrontTree> updated(const ElementSource& elements,
                                                          const ElementChange& change) const;

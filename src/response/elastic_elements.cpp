@@ -47,16 +47,12 @@ ElasticModel::ElasticModel(ElasticBody of, std::size_t intact_nodes)
   }
 }
 
-ElasticElements::ElasticElements(const mesh::TornMesh& mesh, const ElasticModel& model, const Window& window, Side side)
-    : mesh_(mesh), model_(model), window_(window), side_(side) {}
+ElasticElements::ElasticElements(const mesh::TornMesh& mesh, const ElasticModel& model) : mesh_(mesh), model_(model) {}
 
 std::int32_t ElasticElements::node_count() const { return static_cast<std::int32_t>(mesh_.mesh().node_count()); }
 std::int32_t ElasticElements::element_count() const { return static_cast<std::int32_t>(mesh_.mesh().tet_count()); }
 
-bool ElasticElements::is_active(std::int32_t element) const {
-  const TetId tet(element);
-  return mesh_.is_solved(tet) && window_.holds(tet) == (side_ == Side::inside);
-}
+bool ElasticElements::is_active(std::int32_t element) const { return mesh_.is_solved(TetId(element)); }
 
 std::array<std::int32_t, 4> ElasticElements::nodes(std::int32_t element) const {
   const mesh::Tet& tet = mesh_.mesh().tet(TetId(element));
@@ -80,7 +76,6 @@ void ElasticElements::load(std::int32_t element, ElementVector& out) const {
 Vec3 ElasticElements::node_load(std::int32_t node) const {
   const NodeId id(node);
   if (model_.body.dead_force.size() == 0 || id.index() >= mesh_.intact_node_count()) return Vec3::Zero();
-  if (side_ == Side::inside && window_.is_on_rim(id)) return Vec3::Zero();
   return model_.body.dead_force.segment<3>(3 * Eigen::Index{node});
 }
 

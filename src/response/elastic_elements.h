@@ -1,6 +1,6 @@
 #pragma once
 
-/// The tets of a torn body of small strains as the front trees read them: those of a window, or those outside of it.
+/// The tets of a torn body of small strains as the front tree reads them.
 
 #include <cstdint>
 #include <vector>
@@ -9,7 +9,6 @@
 #include "material/parameters.h"
 #include "mesh/torn_mesh.h"
 #include "model/loading.h"
-#include "response/window.h"
 
 namespace rhexis::response {
 
@@ -36,9 +35,8 @@ struct ElasticModel {
 
 class ElasticElements final : public linalg::ElementSource {
  public:
-  enum class Side { inside, outside };
-  /// All of them outlive this.
-  ElasticElements(const mesh::TornMesh& mesh, const ElasticModel& model, const Window& window, Side side);
+  /// Both outlive this.
+  ElasticElements(const mesh::TornMesh& mesh, const ElasticModel& model);
 
   [[nodiscard]] std::int32_t node_count() const override;
   [[nodiscard]] std::int32_t element_count() const override;
@@ -47,15 +45,12 @@ class ElasticElements final : public linalg::ElementSource {
   void stiffness(std::int32_t element, linalg::ElementMatrix& out) const override;
   /// rho g V / 4 at each corner, minus what the prescribed displacements of the corners take: K_e u_held.
   void load(std::int32_t element, linalg::ElementVector& out) const override;
-  /// Of the nodes on the rim, whose load must count once, the outside has it.
   [[nodiscard]] Vec3 node_load(std::int32_t node) const override;
   [[nodiscard]] bool is_free(std::int32_t dof) const override;
 
  private:
   const mesh::TornMesh& mesh_;
   const ElasticModel& model_;
-  const Window& window_;
-  Side side_;
 };
 
 /// 1/2 u K_e u - f_e u over all tets in the solve for u that is prescribed at the supports and zero elsewhere, J: what

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/background.h"
 #include "base/check.h"
 #include "base/clock.h"
+#include "response/corridor.h"
+#include "response/followed.h"
 
 namespace rhexis::response {
 namespace {
@@ -12,19 +15,16 @@ namespace {
 /// What a force has beyond the directions that are known, below this part of it, is rounding.
 constexpr double kSameDirection = 1e-14;
 
-const linalg::FrontTree::Forward* known(const linalg::FrontTree::Forward& forward) {
-  return forward.gram.cols() > 0 ? &forward : nullptr;
-}
-
 }  // namespace
 
-/// The next window, made beside the caller from a copy of the mesh, since the caller edits his.
+/// A new factor, made beside the caller from a copy of the mesh, since the caller edits his.
 struct ExactResponse::Preparation {
   explicit Preparation(const mesh::TornMesh& mesh) : mirror(mesh) {}
 
   mesh::TornMesh mirror;              ///< as the mesh was when the work began, while it is under way; else as it is
   std::vector<mesh::MeshEdit> edits;  ///< since the work began
-  Halves made;
+  double spent_flops = 0.0;           ///< by the caller since the work began
+  Tree made;
   BackgroundTask task;
 
   void follow(const mesh::MeshEdit& edit) {
@@ -36,11 +36,11 @@ struct ExactResponse::Preparation {
   }
 
   /// Waits, and brings the mirror to the present.
-  Halves finish() {
+  Tree finish() {
     task.wait();
     for (mesh::MeshEdit& edit : edits) mirror.apply(std::move(edit));
     edits.clear();
-    return std::exchange(made, {});
+    return std::exchange(made, nullptr);
   }
 };
 
@@ -52,13 +52,11 @@ ExactResponse::~ExactResponse() = default;
 std::unique_ptr<ExactResponse> ExactResponse::make(const mesh::TornMesh& mesh, ExactSettings settings,
                                                    std::span<const Focus> focus) {
   std::unique_ptr<ExactResponse> out(new ExactResponse(mesh, std::move(settings)));
-  Halves halves = make_halves(mesh, out->model_);
-  out->whole_flops_ = halves.outside->flops_made();
-  const auto window = std::make_shared<const Window>(out->place_window(focus, mesh));
-  if (!window->is_empty() && halves.is_stable()) halves = move_window(mesh, out->model_, halves, window, {});
-  if (!out->adopt(std::move(halves))) return nullptr;
+  Tree tree = linalg::FrontTree::make(ElasticElements(mesh, out->model_), {}, separator_weights(mesh, focus));
+  out->whole_flops_ = tree->flops_made();
+  if (!out->adopt(std::move(tree))) return nullptr;
   out->energy_at_first_ = out->potential_energy({});
-  if (out->settings_.in_background && out->whole_flops_ >= out->settings_.window.fewest_flops)
+  if (out->settings_.in_background && out->whole_flops_ >= out->settings_.fewest_flops)
     out->preparation_ = std::make_unique<Preparation>(mesh);
   return out;
 }
@@ -68,32 +66,35 @@ void ExactResponse::grasp(std::span<const NodeId> nodes) {
     RHEXIS_CHECK(node.valid() && node.index() < mesh_.mesh().node_count(), "node {} of {}", node.value(),
                  mesh_.mesh().node_count());
   }
-  held_ = solve_held_nodes(mesh_, model_, halves_, rim_, {nodes.begin(), nodes.end()}, held_);
-  known_.any = false;
-}
-
-Window ExactResponse::place_window(std::span<const Focus> focus, const mesh::TornMesh& mesh) const {
-  return whole_flops_ < settings_.window.fewest_flops ? Window() : Window(mesh, focus, settings_.window);
+  held_.assign(nodes.begin(), nodes.end());
+  solve_held();
 }
 
 FollowReport ExactResponse::follow(const mesh::MeshEdit& edit, std::span<const Focus> focus) {
   const Stopwatch watch;
-  Followed what;
-  what.add(mesh_, edit);
   FollowReport report;
-  Halves next;
-  if (!take_up(edit, focus, next, report)) report.refreshed = make_next(what, focus, next);
-  report.ok = adopt(std::move(next));
-  if (report.ok && preparation_) {
-    preparation_->follow(edit);
-    prepare(focus);
+  Tree next = take_up(edit, report);
+  if (!next) {
+    linalg::ElementChange change;
+    add_applied(mesh_, edit, change);
+    next = tree_->updated(ElasticElements(mesh_, model_), change);
   }
-  report.held = held_.in_solve;
+  const double flops = next->flops_made();
+  report.ok = adopt(std::move(next));
+  if (report.ok) {
+    spent_flops_ = (report.refreshed ? 0.0 : spent_flops_) + flops;
+    if (preparation_) {
+      preparation_->follow(edit);
+      preparation_->spent_flops += flops;
+      prepare(focus);
+    }
+  }
+  report.held = held_in_solve_;
   report.update_seconds = watch.seconds();
   return report;
 }
 
-FollowReport ExactResponse::go_back(const mesh::MeshEdit& edit, std::span<const Focus> focus) {
+FollowReport ExactResponse::go_back(const mesh::MeshEdit& edit, std::span<const Focus> /*focus*/) {
   const Stopwatch watch;
   FollowReport report;
   if (preparation_) {
@@ -101,92 +102,77 @@ FollowReport ExactResponse::go_back(const mesh::MeshEdit& edit, std::span<const 
     preparation_->finish();
     preparation_->mirror.undo();
   }
-  Followed what;
-  what.take_back(mesh_, edit);
-  Halves next;
-  report.refreshed = make_next(what, focus, next);
-  report.ok = adopt(std::move(next));
+  linalg::ElementChange change;
+  add_taken_back(mesh_, edit, change);
+  report.ok = adopt(tree_->updated(ElasticElements(mesh_, model_), change));
   RHEXIS_CHECK(report.ok, "the body before the edit was stable");
-  report.held = held_.in_solve;
+  report.held = held_in_solve_;
   report.update_seconds = watch.seconds();
   return report;
 }
 
-/// True when the window moved.
-bool ExactResponse::make_next(const Followed& what, std::span<const Focus> focus, Halves& next) const {
-  const Window& present = *halves_.window;
-  const bool has_room =
-      std::all_of(focus.begin(), focus.end(), [&](const Focus& each) { return present.has_room(each); });
-  if (!present.is_empty() && has_room && is_inside(mesh_, present, what)) {
-    next = follow_inside(mesh_, model_, halves_, what);
-    return false;
-  }
-  auto window = std::make_shared<const Window>(place_window(focus, mesh_));
-  const bool moved = !window->is_empty() || !present.is_empty();
-  next = move_window(mesh_, model_, halves_, std::move(window), what);
-  return moved;
-}
-
-/// The window that was made in the background, when it is due, or earlier when the present one will not do.
-bool ExactResponse::take_up(const mesh::MeshEdit& edit, std::span<const Focus> focus, Halves& next,
-                            FollowReport& report) {
-  if (!preparation_ || !preparation_->task.under_way()) return false;
-  Followed since;
-  for (const mesh::MeshEdit& each : preparation_->edits) since.add(mesh_, each);
-  const bool is_due = static_cast<int>(preparation_->edits.size()) + 1 >= settings_.take_up_after;
-  Followed now;
-  now.add(mesh_, edit);
-  const auto holds = [&](const Window& window, const Followed& what) {
-    return is_inside(mesh_, window, what) &&
-           std::all_of(focus.begin(), focus.end(), [&](const Focus& each) { return window.has_room(each); });
-  };
-  if (!is_due && holds(*halves_.window, now)) return false;
-  since.add(mesh_, edit);
-  Halves made;
+/// The factor that was made in the background, with the edits since. It is due when the caller has done as many
+/// operations in the meantime: by then it is ready, mostly.
+ExactResponse::Tree ExactResponse::take_up(const mesh::MeshEdit& edit, FollowReport& report) {
+  if (!preparation_ || !preparation_->task.under_way() ||
+      preparation_->spent_flops < settings_.refresh_after * whole_flops_)
+    return nullptr;
+  linalg::ElementChange since;
+  for (const mesh::MeshEdit& each : preparation_->edits) add_applied(mesh_, each, since);
+  add_applied(mesh_, edit, since);
+  Tree made;
   {
     const ScopedTimer timer(report.wait_seconds);
     made = preparation_->finish();
   }
-  if (made.window->is_empty() || !holds(*made.window, since)) return false;
-  next = follow_inside(mesh_, model_, made, since);
+  if (made->outcome() != linalg::FrontOutcome::ok) return nullptr;
   report.refreshed = true;
-  return true;
+  return made->updated(ElasticElements(mesh_, model_), since);
 }
 
 void ExactResponse::prepare(std::span<const Focus> focus) {
-  const bool is_half_way =
-      std::any_of(focus.begin(), focus.end(), [&](const Focus& each) { return halves_.window->is_half_way(each); });
-  if (preparation_->task.under_way() || !is_half_way) return;
-  const auto work = [this, before = halves_, where = std::vector<Focus>(focus.begin(), focus.end())] {
+  if (preparation_->task.under_way() || focus.empty()) return;
+  if (spent_flops_ < settings_.refresh_after * whole_flops_) return;
+  preparation_->spent_flops = 0.0;
+  preparation_->task.start([this, where = std::vector<Focus>(focus.begin(), focus.end())] {
     const mesh::TornMesh& mirror = preparation_->mirror;
-    auto window = std::make_shared<const Window>(place_window(where, mirror));
-    preparation_->made = move_window(mirror, model_, before, std::move(window), {});
-  };
-  preparation_->task.start(work);
+    preparation_->made = linalg::FrontTree::make(ElasticElements(mirror, model_), {}, separator_weights(mirror, where));
+  });
 }
 
 /// False, and nothing changes, when the body has a free motion.
-bool ExactResponse::adopt(Halves next) {
-  if (!next.is_stable()) return false;
-  if (!next_rim_.factor(*next.outside, next.inside.get())) return false;
-  halves_ = std::move(next);
-  std::swap(rim_, next_rim_);
-  held_ = solve_held_nodes(mesh_, model_, halves_, rim_, held_.nodes, held_);
-  known_.any = false;
+bool ExactResponse::adopt(Tree next) {
+  if (next->outcome() != linalg::FrontOutcome::ok) return false;
+  tree_ = std::move(next);
+  solve_held();
   return true;
 }
 
-VectorX ExactResponse::solve_rim(const VectorX& held_forces, double loads) const {
-  VectorX x = loads * rim_.load();
-  x.noalias() += held_.at_rim * held_forces;
-  rim_.backward(x);
-  return x;
-}
-
-bool ExactResponse::is_solved_inside(NodeId node) const {
-  const auto around = mesh_.tets_around(node);
-  return std::any_of(around.begin(), around.end(),
-                     [&](TetId tet) { return mesh_.is_solved(tet) && halves_.window->holds(tet); });
+/// L_cc = y^T y of the forward solutions L y = e of unit forces, and u_c by the loads = y^T (that of the loads).
+void ExactResponse::solve_held() {
+  const auto columns = static_cast<Eigen::Index>(3 * held_.size());
+  held_in_solve_ = true;
+  VectorX given = VectorX::Zero(columns);
+  std::vector<std::int32_t> dof;
+  std::vector<Eigen::Index> column_of;
+  for (Eigen::Index column = 0; column < columns; ++column) {
+    const NodeId node = held_[static_cast<std::size_t>(column / 3)];
+    const auto component = static_cast<std::int32_t>(column % 3);
+    if (!is_in_solve(node)) {
+      held_in_solve_ = false;
+    } else if (model_.held[3 * mesh_.original(node).index() + static_cast<std::size_t>(component)] != 0) {
+      given[column] = prescribed(node)[component];
+    } else {
+      dof.push_back(3 * node.value() + component);
+      column_of.push_back(column);
+    }
+  }
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(dof.size()), columns);
+  for (std::size_t i = 0; i < dof.size(); ++i) rows(static_cast<Eigen::Index>(i), column_of[i]) = 1.0;
+  forward_ = tree_->forward(dof, rows);
+  compliance_ = forward_.gram;
+  rest_ = forward_.with_load + given;
+  known_.any = false;
 }
 
 bool ExactResponse::is_in_solve(NodeId node) const {
@@ -194,36 +180,34 @@ bool ExactResponse::is_in_solve(NodeId node) const {
   return std::any_of(around.begin(), around.end(), [&](TetId tet) { return mesh_.is_solved(tet); });
 }
 
-/// Without what is prescribed, which the trees leave at zero.
+Vec3 ExactResponse::prescribed(NodeId node) const {
+  return model_.value.segment<3>(3 * Eigen::Index{mesh_.original(node).value()});
+}
+
+void ExactResponse::check_forces(const VectorX& held_forces) const {
+  RHEXIS_CHECK(held_forces.size() == rest_.size(), "{} forces on {} held dofs", held_forces.size(), rest_.size());
+}
+
+/// Without what is prescribed, which the tree leaves at zero.
 void ExactResponse::solve_at(std::span<const NodeId> nodes, const VectorX& held_forces, double loads, VectorX& out) {
-  const VectorX x_rim = solve_rim(held_forces, loads);
-  std::vector<std::int32_t> inside;
-  std::vector<std::int32_t> outside;
+  std::vector<std::int32_t> some;
   for (const NodeId node : nodes) {
-    if (is_in_solve(node)) (is_solved_inside(node) ? inside : outside).push_back(node.value());
+    if (is_in_solve(node)) some.push_back(node.value());
   }
-  if (!inside.empty()) {
-    halves_.inside->backward_at(inside, rim_.at_inside(x_rim), known(held_.inside), held_forces, loads, x_inside_);
-  }
-  if (!outside.empty()) {
-    halves_.outside->backward_at(outside, rim_.at_outside(x_rim), known(held_.outside), held_forces, loads, x_outside_);
-  }
+  tree_->backward_at(some, {}, &forward_, held_forces, loads, x_);
   out.setZero(static_cast<Eigen::Index>(3 * nodes.size()));
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (!is_in_solve(nodes[i])) continue;
-    const VectorX& x = is_solved_inside(nodes[i]) ? x_inside_ : x_outside_;
-    out.segment<3>(static_cast<Eigen::Index>(3 * i)) = x.segment<3>(3 * Eigen::Index{nodes[i].value()});
+    out.segment<3>(static_cast<Eigen::Index>(3 * i)) = x_.segment<3>(3 * Eigen::Index{nodes[i].value()});
   }
 }
 
 void ExactResponse::displacement(std::span<const NodeId> nodes, const VectorX& held_forces, VectorX& out) {
-  RHEXIS_CHECK(held_forces.size() == held_.rest.size(), "{} forces on {} held dofs", held_forces.size(),
-               held_.rest.size());
-  const auto dofs = static_cast<Eigen::Index>(3 * nodes.size());
+  check_forces(held_forces);
   if (!known_.any || !std::equal(nodes.begin(), nodes.end(), known_.nodes.begin(), known_.nodes.end())) {
     known_.nodes.assign(nodes.begin(), nodes.end());
     known_.force.resize(held_forces.size(), 0);
-    known_.moved.resize(dofs, 0);
+    known_.moved.resize(static_cast<Eigen::Index>(3 * nodes.size()), 0);
     solve_at(nodes, VectorX::Zero(held_forces.size()), 1.0, known_.rest);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       if (is_in_solve(nodes[i])) known_.rest.segment<3>(static_cast<Eigen::Index>(3 * i)) += prescribed(nodes[i]);
@@ -237,61 +221,49 @@ void ExactResponse::displacement(std::span<const NodeId> nodes, const VectorX& h
     out += part * known_.moved.col(column);
   };
   for (Eigen::Index column = 0; column < known_.force.cols(); ++column) use(column, known_.force.col(column).dot(left));
-  // What is left by rounding alone is no new direction: it would only be noise.
-  if (!(left.norm() > kSameDirection * held_forces.norm())) return;
+  const double more = left.norm();
+  if (!(more > kSameDirection * held_forces.norm())) return;
+  if (known_.force.cols() == held_forces.size()) {  // as many as there can be: rounding has made some depend on others
+    known_.any = false;
+    displacement(nodes, held_forces, out);
+    return;
+  }
+  const VectorX direction = left / more;
   VectorX moved;
-  const VectorX direction = left.normalized();
   solve_at(nodes, direction, 0.0, moved);
   const Eigen::Index column = known_.force.cols();
   known_.force.conservativeResize(Eigen::NoChange, column + 1);
   known_.moved.conservativeResize(Eigen::NoChange, column + 1);
   known_.force.col(column) = direction;
   known_.moved.col(column) = moved;
-  use(column, left.norm());
+  use(column, more);
 }
 
 void ExactResponse::whole_displacement(const VectorX& held_forces, VectorX& out) {
-  RHEXIS_CHECK(held_forces.size() == held_.rest.size(), "{} forces on {} held dofs", held_forces.size(),
-               held_.rest.size());
-  const VectorX x_rim = solve_rim(held_forces, 1.0);
-  halves_.outside->backward(rim_.at_outside(x_rim), known(held_.outside), held_forces, 1.0, x_outside_);
-  if (halves_.inside) {
-    halves_.inside->backward(rim_.at_inside(x_rim), known(held_.inside), held_forces, 1.0, x_inside_);
-  }
-  out.setZero(static_cast<Eigen::Index>(3 * mesh_.mesh().node_count()));
-  for (std::size_t i = 0; i < mesh_.mesh().node_count(); ++i) {
+  check_forces(held_forces);
+  tree_->backward({}, &forward_, held_forces, 1.0, out);
+  for (std::size_t i = 0; i < mesh_.mesh().node_count() && model_.moves_supports; ++i) {
     const NodeId node(i);
-    if (!is_in_solve(node)) continue;
-    const auto at = static_cast<Eigen::Index>(3 * i);
-    out.segment<3>(at) = (is_solved_inside(node) ? x_inside_ : x_outside_).segment<3>(at) + prescribed(node);
+    if (is_in_solve(node)) out.segment<3>(static_cast<Eigen::Index>(3 * i)) += prescribed(node);
   }
-}
-
-Vec3 ExactResponse::prescribed(NodeId node) const {
-  return model_.value.segment<3>(3 * Eigen::Index{mesh_.original(node).value()});
 }
 
 /// With b what the loads leave to the free dofs and P the held nodes: u = K^-1 (b + P a), and
 /// 1/2 u K u - b u = 1/2 a L_cc a - 1/2 b K^-1 b, where b K^-1 b is the square of the loads' forward solution.
 double ExactResponse::potential_energy(const VectorX& held_forces) const {
-  double loads = halves_.outside->load_energy() + rim_.load().squaredNorm();
-  if (halves_.inside) loads += halves_.inside->load_energy();
-  const double hand = held_forces.size() > 0 ? held_forces.dot(held_.compliance * held_forces) : 0.0;
-  return 0.5 * (hand - loads) + support_energy(mesh_, model_);
+  const double hand = held_forces.size() > 0 ? held_forces.dot(compliance_ * held_forces) : 0.0;
+  return 0.5 * (hand - tree_->load_energy()) + support_energy(mesh_, model_);
 }
 
 double ExactResponse::stored_energy(const VectorX& held_forces) {
+  check_forces(held_forces);
   return potential_energy(held_forces) - energy_at_first_;
 }
 
 std::size_t ExactResponse::memory_bytes() const {
-  std::size_t bytes =
-      halves_.outside->memory_bytes() + rim_.memory_bytes() + next_rim_.memory_bytes() + halves_.window->memory_bytes();
-  if (halves_.inside) bytes += halves_.inside->memory_bytes();
-  for (const linalg::FrontTree::Forward* forward : {&held_.outside, &held_.inside}) {
-    for (const Eigen::MatrixXd& y : forward->y) bytes += sizeof(double) * static_cast<std::size_t>(y.size());
-  }
-  return bytes + sizeof(double) * static_cast<std::size_t>(x_inside_.size() + x_outside_.size() + known_.moved.size());
+  std::size_t doubles = static_cast<std::size_t>(x_.size() + known_.moved.size());
+  for (const Eigen::MatrixXd& y : forward_.y) doubles += static_cast<std::size_t>(y.size());
+  return tree_->memory_bytes() + sizeof(double) * doubles;
 }
 
 }  // namespace rhexis::response

@@ -1,31 +1,32 @@
 #pragma once
 
 /// The answer of the torn body itself, for small strains: after each edit the numbers are those of a full reassembly
-/// and refactorisation, and only what the edit touched is factored again (docs/exact-response.md).
+/// and refactorisation, and only what depends on the edit is factored again (docs/exact-response.md).
 ///
-/// The body is cut at the rim of a window about the crack fronts. Outside and inside are condensed onto the rim, each
-/// by a FrontTree; an edit changes the inside alone. When a front comes to the end of its window the window moves on,
-/// which changes the outside as well, and can be made ready beside the caller before it is needed.
+/// That is the way in the elimination tree from what the edit touched to the last front (Herholz and Sorkine-Hornung
+/// 2020), which lies where the last edit was, in a tree whose large separators keep out of the way of the cracks. A
+/// crack that leaves the way that was foreseen makes the updates dearer, not wrong; once they have cost as much as a
+/// new factor, one for the way it takes now is made beside the caller.
 
 #include <memory>
+#include <span>
 #include <vector>
 
-#include "base/background.h"
-#include "response/halves.h"
-#include "response/held_nodes.h"
+#include "linalg/front_tree.h"
+#include "response/elastic_elements.h"
 #include "response/response.h"
-#include "response/rim_system.h"
 
 namespace rhexis::response {
 
 struct ExactSettings {
   ElasticBody body;
-  WindowShape window;
-  /// Make the next window ready beside the caller once a front has used half of the present one. The result is the
-  /// same to the bit from run to run, but not the same as without.
+  /// Make new factors beside the caller. When one is begun and when it is taken up is decided by counted operations,
+  /// never by the clock: the same bits from run to run.
   bool in_background = false;
-  /// Edits after which what was begun in the background is taken up: fixed, so that timing decides nothing.
-  int take_up_after = 2;
+  /// Operations of a whole factor below which a new one is not worth its while.
+  double fewest_flops = 1e9;
+  /// In whole factors: what updates have cost when a new factor is begun, and from then until it is taken up.
+  double refresh_after = 1.0;
 };
 
 class ExactResponse final : public Response {
@@ -42,41 +43,19 @@ class ExactResponse final : public Response {
   FollowReport follow(const mesh::MeshEdit& edit, std::span<const Focus> focus) override;
   FollowReport go_back(const mesh::MeshEdit& edit, std::span<const Focus> focus) override;
 
-  [[nodiscard]] const Eigen::MatrixXd& compliance() const override { return held_.compliance; }
-  [[nodiscard]] const VectorX& rest() const override { return held_.rest; }
+  [[nodiscard]] const Eigen::MatrixXd& compliance() const override { return compliance_; }
+  [[nodiscard]] const VectorX& rest() const override { return rest_; }
+  /// The first forces after an edit, or for other nodes, are solved for; in one topology everything is linear, and what
+  /// lies in their span is then a sum of few columns.
   void displacement(std::span<const NodeId> nodes, const VectorX& held_forces, VectorX& out) override;
   void whole_displacement(const VectorX& held_forces, VectorX& out) override;
   [[nodiscard]] double stored_energy(const VectorX& held_forces) override;
   [[nodiscard]] std::size_t memory_bytes() const override;
 
-  [[nodiscard]] const Window& window() const { return *halves_.window; }
-
  private:
   struct Preparation;
-  ExactResponse(const mesh::TornMesh& mesh, ExactSettings settings);
-
-  bool make_next(const Followed& what, std::span<const Focus> focus, Halves& next) const;
-  bool take_up(const mesh::MeshEdit& edit, std::span<const Focus> focus, Halves& next, FollowReport& report);
-  void prepare(std::span<const Focus> focus);
-  bool adopt(Halves next);
-  [[nodiscard]] Window place_window(std::span<const Focus> focus, const mesh::TornMesh& mesh) const;
-  [[nodiscard]] VectorX solve_rim(const VectorX& held_forces, double loads) const;
-  void solve_at(std::span<const NodeId> nodes, const VectorX& held_forces, double loads, VectorX& out);
-  [[nodiscard]] bool is_solved_inside(NodeId node) const;
-  [[nodiscard]] bool is_in_solve(NodeId node) const;
-  [[nodiscard]] Vec3 prescribed(NodeId node) const;
-  [[nodiscard]] double potential_energy(const VectorX& held_forces) const;
-
-  const mesh::TornMesh& mesh_;
-  ExactSettings settings_;
-  ElasticModel model_;
-  Halves halves_;
-  RimSystem rim_;
-  RimSystem next_rim_;  ///< of the version before, whose memory the next one takes
-  HeldNodes held_;
-  double energy_at_first_ = 0.0;
-  /// What some nodes do under the loads and under forces on the held nodes, as far as it has been asked for: in one
-  /// topology everything is linear, and the forces of a contact have three dimensions at most.
+  using Tree = std::shared_ptr<const linalg::FrontTree>;
+  /// What some nodes do under the loads, and under some forces on the held nodes.
   struct Known {
     std::vector<NodeId> nodes;
     VectorX rest;           ///< m, 3 per node
@@ -84,9 +63,33 @@ class ExactResponse final : public Response {
     Eigen::MatrixXd moved;  ///< m/N, by each of them
     bool any = false;
   };
+
+  ExactResponse(const mesh::TornMesh& mesh, ExactSettings settings);
+  Tree take_up(const mesh::MeshEdit& edit, FollowReport& report);
+  void prepare(std::span<const Focus> focus);
+  bool adopt(Tree next);
+  void solve_held();
+  void solve_at(std::span<const NodeId> nodes, const VectorX& held_forces, double loads, VectorX& out);
+  void check_forces(const VectorX& held_forces) const;
+  [[nodiscard]] bool is_in_solve(NodeId node) const;
+  [[nodiscard]] Vec3 prescribed(NodeId node) const;
+  [[nodiscard]] double potential_energy(const VectorX& held_forces) const;
+
+  const mesh::TornMesh& mesh_;
+  ExactSettings settings_;
+  ElasticModel model_;
+  Tree tree_;
+  double whole_flops_ = 0.0;  ///< of the first factor
+  double spent_flops_ = 0.0;  ///< by updates since the present tree was cut
+  double energy_at_first_ = 0.0;
+
+  std::vector<NodeId> held_;
+  bool held_in_solve_ = true;
+  linalg::FrontTree::Forward forward_;  ///< of unit forces on the held nodes
+  Eigen::MatrixXd compliance_;
+  VectorX rest_;
   Known known_;
-  double whole_flops_ = 0.0;                  ///< of the first factor
-  VectorX x_inside_, x_outside_;              ///< work
+  VectorX x_;                                 ///< work
   std::unique_ptr<Preparation> preparation_;  ///< null without background; last, so that it ends first
 };
 

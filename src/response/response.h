@@ -13,13 +13,13 @@
 
 namespace rhexis::response {
 
-/// Where the next edits will be: the tets within `radius` of a front. A response that keeps a window of the body ready
-/// moves it there.
+/// Where the next edits will be: the tets within `radius` of a front. A response may make ready for them.
 struct Focus {
   Vec3 centre = Vec3::Zero();     ///< m, middle of the front
   Vec3 direction = Vec3::Zero();  ///< where it runs; zero when unknown
   double half_length = 0.0;       ///< m, half the extent of the front along itself
   double radius = 0.0;            ///< m, of the local object
+  Vec3 tangent = Vec3::Zero();    ///< along the front; zero when unknown
 };
 
 /// What following an edit took.
@@ -27,7 +27,7 @@ struct FollowReport {
   bool ok = true;  ///< false: the torn body is not stable (a free motion is left); answers are those of before
   double update_seconds = 0.0;  ///< on the calling thread, all included
   double wait_seconds = 0.0;    ///< of that, waiting for work in the background
-  bool refreshed = false;       ///< the window moved
+  bool refreshed = false;       ///< what was made in the background was taken up
   bool held = true;  ///< false: a held node has no tet in the solve any more, its rows and columns of the compliance
                      ///< are zero, and the hand has to let go
 };

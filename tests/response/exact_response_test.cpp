@@ -14,13 +14,12 @@ namespace {
 /// hundred times softer. Measured: 6e-12 on the plate, 2e-10 on that bar; what is promised is 1e-8.
 constexpr double kExact = 1e-9;
 
-ExactSettings settings_for(const TornCase& body, double ahead, bool in_background = false) {
+ExactSettings settings_for(const TornCase& body, bool in_background = false) {
   ExactSettings out;
   out.body = body.elastic;
-  out.window.ahead = ahead;
-  out.window.largest_part = 0.6;
-  out.window.fewest_flops = 0.0;
   out.in_background = in_background;
+  out.fewest_flops = 0.0;
+  out.refresh_after = 0.2;
   return out;
 }
 
@@ -37,17 +36,17 @@ struct Follower {
   std::vector<NodeId> held;
   Scale scale;
   double energy;
-  int moves = 0;
+  int refreshed = 0;
   double worst = 0.0;
 
-  Follower(TornCase of, double ahead, double radius_in_edges, bool in_background = false)
+  explicit Follower(TornCase of, bool in_background = false, double radius_in_edges = 2.0)
       : body(std::move(of)),
         radius(radius_in_edges),
         held(corner_and_far(body)),
         scale(scale_of(body, held)),
         energy(TornBodyOracle(body.cut.body, body.elastic).energy_at_rest()) {
     const Focus focus = body.focus(radius);
-    response = ExactResponse::make(body.cut.body, settings_for(body, ahead, in_background), std::span(&focus, 1));
+    response = ExactResponse::make(body.cut.body, settings_for(body, in_background), std::span(&focus, 1));
     response->grasp(held);
   }
 
@@ -60,7 +59,7 @@ struct Follower {
       body.undo();
       return false;
     }
-    moves += report.refreshed ? 1 : 0;
+    refreshed += report.refreshed ? 1 : 0;
     if (!report.held) {
       std::erase_if(held, [&](NodeId node) { return !body.in_solve(node); });
       response->grasp(held);
@@ -103,39 +102,22 @@ INSTANTIATE_TEST_SUITE_P(Bodies, ExactResponseOf, ::testing::Values("plate", "ba
                          [](const auto& of) { return std::string(of.param); });
 
 TEST_P(ExactResponseOf, IsThatOfTheRefactoredBodyWhileItTears) {
-  Follower run(case_named(GetParam()), 1.0, 2.0);
+  Follower run(case_named(GetParam()));
   const int steps = run.tear(1.0, 12);
   EXPECT_GE(steps, 5);
-  EXPECT_GE(run.moves, 2) << "the window has to move in this test";
-  EXPECT_LT(run.moves, steps) << "and to stay";
-  rhexis::test::measured("exact response, {}: {} steps, {} moves of the window, off by {:.1e}", GetParam(), steps,
-                         run.moves, run.worst);
+  EXPECT_EQ(run.refreshed, 0);
+  rhexis::test::measured("exact response, {}: {} steps, off by {:.1e}", GetParam(), steps, run.worst);
 }
 
-TEST_P(ExactResponseOf, IsTheSameWithoutAWindow) {
-  TornCase body = case_named(GetParam());
-  const auto response = ExactResponse::make(body.cut.body, settings_for(body, 1.0), {});
-  ASSERT_TRUE(response);
-  const mesh::BoundingBox box = mesh::bounding_box(body.cut.body.mesh());
-  const std::vector<NodeId> held{body.nearest(box.from + Vec3(0.9, 0.2, 0.8).cwiseProduct(box.size()))};
-  response->grasp(held);
-  const mesh::MeshEdit edit = body.step(2.0);
-  EXPECT_FALSE(response->follow(edit, {}).refreshed);
-  EXPECT_TRUE(response->window().is_empty());
-  TornBodyOracle oracle(body.cut.body, body.elastic);
-  const Eigen::MatrixXd expected = oracle.compliance(held);
-  EXPECT_LT((response->compliance() - expected).norm(), kExact * expected.norm());
-}
-
-TEST_P(ExactResponseOf, IsExactWithWindowsMadeInTheBackground) {
-  Follower run(case_named(GetParam()), 2.5, 2.0, true);
-  run.tear(0.7, 12);
-  EXPECT_GE(run.moves, 1);
+TEST_P(ExactResponseOf, IsExactWithFactorsMadeInTheBackground) {
+  Follower run(case_named(GetParam()), true);
+  run.tear(0.5, 24);
+  EXPECT_GE(run.refreshed, 1) << "one has to be taken up in this test";
 }
 
 TEST_P(ExactResponseOf, GoesBackWithTheBody) {
   for (const bool in_background : {false, true}) {
-    Follower run(case_named(GetParam()), 1.0, 2.0, in_background);
+    Follower run(case_named(GetParam()), in_background);
     EXPECT_EQ(run.tear(1.0, 6), 6);
     for (int step = 0; step < 4; ++step) run.go_back();
     EXPECT_EQ(run.tear(1.5, 2), 2);  // and another way from there
@@ -170,7 +152,7 @@ mesh::MeshEdit double_nodes(const TornCase& body, const Vec3& centre, double rad
 }
 
 TEST_P(ExactResponseOf, FollowsNodesThatAreDoubledAndJoinedAgain) {
-  Follower run(case_named(GetParam()), 1.0, 3.0);
+  Follower run(case_named(GetParam()), false, 3.0);
   TornCase& body = run.body;
   const auto tear = [&](int most) {
     int followed = 0;
@@ -194,14 +176,12 @@ TEST_P(ExactResponseOf, FollowsNodesThatAreDoubledAndJoinedAgain) {
 TEST_P(ExactResponseOf, GraspsAnyNodeAtAnyTime) {
   TornCase body = case_named(GetParam());
   const Focus focus = body.focus(2.0);
-  const auto response = ExactResponse::make(body.cut.body, settings_for(body, 2.0), std::span(&focus, 1));
+  const auto response = ExactResponse::make(body.cut.body, settings_for(body), std::span(&focus, 1));
   std::mt19937_64 random(7);
-  int inside = 0, outside = 0, on_rim = 0;
   for (int step = 0; step < 4; ++step) {
     const mesh::MeshEdit edit = body.step(1.0);
     const Focus now = body.focus(2.0);
     ASSERT_TRUE(response->follow(edit, std::span(&now, 1)).ok);
-    ASSERT_FALSE(response->window().is_empty());
     TornBodyOracle oracle(body.cut.body, body.elastic);
     const std::vector<NodeId> near = body.nodes_near(now.centre, 1.6 * now.radius);
     for (int grasp = 0; grasp < 6; ++grasp) {
@@ -212,47 +192,40 @@ TEST_P(ExactResponseOf, GraspsAnyNodeAtAnyTime) {
                                 : NodeId(static_cast<std::size_t>(random() % body.cut.body.mesh().node_count()));
         if (body.in_solve(node) && std::find(held.begin(), held.end(), node) == held.end()) held.push_back(node);
       }
-      if (held.empty()) continue;
-      const auto around = body.cut.body.tets_around(held[0]);
-      const bool rim = response->window().is_on_rim(held[0]);
-      const bool in = !rim && std::any_of(around.begin(), around.end(), [&](TetId tet) {
-        return body.cut.body.is_solved(tet) && response->window().holds(tet);
-      });
-      ++(rim ? on_rim : in ? inside : outside);
       response->grasp(held);
       const Eigen::MatrixXd expected = oracle.compliance(held);
-      EXPECT_LT((response->compliance() - expected).norm(), kExact * expected.norm());
-      EXPECT_LT((response->rest() - oracle.rest(held)).norm(), kExact * oracle.rest(held).norm());
+      EXPECT_LE((response->compliance() - expected).norm(), kExact * expected.norm());
+      EXPECT_LE((response->rest() - oracle.rest(held)).norm(), kExact * oracle.rest(held).norm());
     }
   }
-  EXPECT_GT(inside, 0);
-  EXPECT_GT(outside, 0);
-  EXPECT_GT(on_rim, 0);
 }
 
 TEST_P(ExactResponseOf, HasTheSameBitsOnOneThreadAndTwoAndFromRunToRun) {
+  int refreshed = 0;
   const auto run = [&](int threads, bool in_background) {
     set_thread_count(threads);
     TornCase body = case_named(GetParam());
-    const Focus focus = body.focus(2.0);
-    const auto response =
-        ExactResponse::make(body.cut.body, settings_for(body, 2.5, in_background), std::span(&focus, 1));
+    Focus focus = body.focus(2.0);
+    const auto response = ExactResponse::make(body.cut.body, settings_for(body, in_background), std::span(&focus, 1));
     response->grasp(corner_and_far(body));
     Hash bits;
-    for (int step = 0; step < 8; ++step) {
-      const mesh::MeshEdit edit = body.step(0.7);
-      const Focus now = body.focus(2.0);
-      EXPECT_TRUE(response->follow(edit, std::span(&now, 1)).ok);
+    for (int step = 0; step < 16; ++step) {
+      const mesh::MeshEdit edit = body.step(0.5);
+      focus = body.focus(2.0);
+      const FollowReport report = response->follow(edit, std::span(&focus, 1));
+      EXPECT_TRUE(report.ok);
+      refreshed += report.refreshed ? 1 : 0;
       VectorX u;
       response->whole_displacement(some_force(response->rest().size()), u);
+      const Eigen::MatrixXd& L = response->compliance();
       bits.add(std::span<const double>(u.data(), static_cast<std::size_t>(u.size())));
-      bits.add(std::span<const double>(response->compliance().data(),
-                                       static_cast<std::size_t>(response->compliance().size())));
+      bits.add(std::span<const double>(L.data(), static_cast<std::size_t>(L.size())));
     }
     set_thread_count(0);
     return bits.value();
   };
   const std::uint64_t alone = run(1, true);
+  EXPECT_GT(refreshed, 0);
   for (int again = 0; again < 3; ++again) EXPECT_EQ(run(2, true), alone);
   EXPECT_EQ(run(1, false), run(2, false));
 }
@@ -260,7 +233,7 @@ TEST_P(ExactResponseOf, HasTheSameBitsOnOneThreadAndTwoAndFromRunToRun) {
 TEST(ExactResponse, StandsWhereItWasWhenTheTornBodyIsNotStable) {
   TornCase body = plate_case(1000);
   const Focus focus = body.focus(2.0);
-  const auto response = ExactResponse::make(body.cut.body, settings_for(body, 1.0), std::span(&focus, 1));
+  const auto response = ExactResponse::make(body.cut.body, settings_for(body), std::span(&focus, 1));
   const NodeId corner = body.nearest({0.0, 0.0, 0.0});
   response->grasp(std::span(&corner, 1));
   const Eigen::MatrixXd before = response->compliance();
@@ -296,7 +269,7 @@ TEST(ExactResponse, StandsWhereItWasWhenTheTornBodyIsNotStable) {
 TEST(ExactResponse, SaysWhenAHeldNodeHasLeftTheSolve) {
   TornCase body = plate_case(1000);
   const Focus focus = body.focus(2.0);
-  const auto response = ExactResponse::make(body.cut.body, settings_for(body, 1.0), std::span(&focus, 1));
+  const auto response = ExactResponse::make(body.cut.body, settings_for(body), std::span(&focus, 1));
   const std::vector<NodeId> held{body.nearest({0.24, 0.0, 0.0}), body.nearest({0.0, 0.0, 0.0})};
   response->grasp(held);
   mesh::MeshEdit edit;
@@ -313,7 +286,7 @@ TEST(ExactResponse, SaysWhenAHeldNodeHasLeftTheSolve) {
 
 TEST(ExactResponse, HoldsASupportedNodeStill) {
   const TornCase body = plate_case(600);
-  const auto response = ExactResponse::make(body.cut.body, settings_for(body, 1.0), {});
+  const auto response = ExactResponse::make(body.cut.body, settings_for(body), {});
   const NodeId node = body.nearest({0.1, 0.24, 0.0});
   response->grasp(std::span(&node, 1));
   EXPECT_TRUE(response->compliance().isZero(0.0));
@@ -325,7 +298,7 @@ TEST(ExactResponse, HoldsASupportedNodeStill) {
 
 TEST(ExactResponse, IsNotMadeOfABodyWithAFreeMotion) {
   TornCase body = plate_case(600);
-  ExactSettings settings = settings_for(body, 1.0);
+  ExactSettings settings = settings_for(body);
   settings.body.supports.clear();
   EXPECT_EQ(ExactResponse::make(body.cut.body, settings, {}), nullptr);
 }
@@ -339,13 +312,11 @@ TEST(ExactResponse, FollowsSeveralCracksAtATime) {
     return std::vector<Focus>{body.focus(radius),
                               {other.from + at * other.direction, other.direction, 0.005, radius * body.edge()}};
   };
-  const auto response = ExactResponse::make(body.cut.body, settings_for(body, 1.5), foci());
+  const auto response = ExactResponse::make(body.cut.body, settings_for(body), foci());
   const std::vector<NodeId> held = corner_and_far(body);
   const Scale scale = scale_of(body, held);
   const double energy = TornBodyOracle(body.cut.body, body.elastic).energy_at_rest();
   response->grasp(held);
-  EXPECT_FALSE(response->window().is_empty());
-  int stays = 0;
   for (int step = 0; step < 6; ++step) {
     if (step % 2 == 0) {
       body.step(1.0);
@@ -355,16 +326,14 @@ TEST(ExactResponse, FollowsSeveralCracksAtATime) {
     }
     const FollowReport report = response->follow(body.cut.body.history().back(), foci());
     ASSERT_TRUE(report.ok);
-    stays += report.refreshed ? 0 : 1;
     EXPECT_LT(difference(body, *response, held, foci()[0], scale, energy).largest(), kExact);
   }
-  EXPECT_GT(stays, 0);
 }
 
 TEST(ExactResponse, KnowsTheDisplacementUnderEveryForce) {
   TornCase body = plate_case(1000);
   const Focus focus = body.focus(2.0);
-  const auto response = ExactResponse::make(body.cut.body, settings_for(body, 1.0), std::span(&focus, 1));
+  const auto response = ExactResponse::make(body.cut.body, settings_for(body), std::span(&focus, 1));
   const std::vector<NodeId> held = corner_and_far(body);
   response->grasp(held);
   TornBodyOracle oracle(body.cut.body, body.elastic);
@@ -386,14 +355,20 @@ TEST(ExactResponse, KnowsTheDisplacementUnderEveryForce) {
 TEST(ExactResponse, TakesNoMoreMemoryTheLongerItTears) {
   TornCase body = plate_case(3000);
   Focus focus = body.focus(2.0);
-  const auto response = ExactResponse::make(body.cut.body, settings_for(body, 2.0), std::span(&focus, 1));
-  std::size_t most = response->memory_bytes();
-  for (int step = 0; step < 15; ++step) {
-    const mesh::MeshEdit edit = body.step(1.0);
-    focus = body.focus(2.0);
-    if (!response->follow(edit, std::span(&focus, 1)).ok) break;
-    if (step < 3) most = std::max(most, response->memory_bytes());  // a window of all its size is in
-    EXPECT_LT(static_cast<double>(response->memory_bytes()), 1.3 * static_cast<double>(most));
+  const auto response = ExactResponse::make(body.cut.body, settings_for(body), std::span(&focus, 1));
+  const std::size_t first = response->memory_bytes();
+  int steps = 0;
+  for (; steps < 40; ++steps) {  // there and back again, over and over
+    if (steps % 10 < 5) {
+      const mesh::MeshEdit edit = body.step(1.0);
+      focus = body.focus(2.0);
+      ASSERT_TRUE(response->follow(edit, std::span(&focus, 1)).ok);
+    } else {
+      const mesh::MeshEdit edit = body.undo();
+      focus = body.focus(2.0);
+      ASSERT_TRUE(response->go_back(edit, std::span(&focus, 1)).ok);
+    }
+    EXPECT_LT(static_cast<double>(response->memory_bytes()), 1.3 * static_cast<double>(first));
   }
 }
 

@@ -46,7 +46,7 @@ struct TornCase {
   [[nodiscard]] double edge() const { return cut.settings.mean_edge; }
   [[nodiscard]] Focus focus(double radius_in_edges) const {
     return {path.from + at * path.direction, path.direction, std::min(path.half_width, 2.0 * edge()),
-            radius_in_edges * edge()};
+            radius_in_edges * edge(), path.tangent};
   }
   /// Cuts on by `length` edges, with what loses its support frozen; the body takes it.
   mesh::MeshEdit step(double length) {
