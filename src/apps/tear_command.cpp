@@ -6,6 +6,7 @@
 #include "apps/progress.h"
 #include "apps/scene_options.h"
 #include "apps/tear_output.h"
+#include "apps/tear_start.h"
 #include "base/clock.h"
 #include "scene/tear_problem.h"
 #include "session/tear_session.h"
@@ -14,26 +15,6 @@ namespace rhexis::apps {
 namespace {
 
 using session::TearSession;
-
-session::TearSettings settings_of(const scene::TearProblem& problem) {
-  const scene::FractureSettings& fracture = problem.fracture;
-  return {
-      .body = problem.body,
-      .criterion = fracture.criterion.value_or(""),
-      .strength = fracture.strength,
-      .toughness = fracture.toughness,
-      .advance_threshold = fracture.advance_threshold.value_or(0.0),
-      .ahead_only = fracture.ahead_only,
-      .local_radius = fracture.local_radius.value_or(0.0),
-      .incision = fracture.incision == "split" ? fracture::IncisionMethod::split : fracture::IncisionMethod::keep_nodes,
-      .contact = problem.interaction.blend_contact ? response::ContactRule::blend : response::ContactRule::consistent};
-}
-
-std::vector<session::CrackLine> cracks_of(const scene::TearProblem& problem) {
-  std::vector<session::CrackLine> lines;
-  for (const scene::CrackSettings& crack : problem.cracks) lines.push_back({crack.from, crack.to, crack.through});
-  return lines;
-}
 
 /// The scripted hand, tick by tick. Ends early on trouble, on an error of the output, or when asked to.
 class Script {
@@ -49,7 +30,7 @@ class Script {
     for (const scene::PullSettings& pull : problem_.pulls) {
       const auto mode = pull.push ? response::ContactMode::push : response::ContactMode::hold;
       if (const Expected<void> holds = tear_.grasp(pull.at, mode); !holds)
-        return pull.place.fail(holds.error().what, holds.error().remedy).value().message();
+        return fmt::format("the pull of {}: {}", pull.place.describe(), holds.error().message());
       const int moving = ticks_of(pull.seconds);
       const int all = moving + ticks_of(pull.hold);
       for (int k = 1; k <= all; ++k) {
@@ -58,7 +39,8 @@ class Script {
         if (!trouble || !trouble->empty()) return trouble;
         if (interrupt.asked()) return std::string("stopped by Ctrl-C");
       }
-      tear_.let_go();
+      // After the last pull the result is written as it stands, and then the hand lets go.
+      if (&pull != &problem_.pulls.back()) tear_.let_go();
     }
     return std::string();
   }
@@ -72,10 +54,13 @@ class Script {
     Expected<void> written;
     const session::TickReport report = tear_.tick(hand, [&](const session::AdvanceRecord& advance) {
       if (written) written = output_.write_topology(tear_, time);
+      output_.note_force(advance.force_before);
       progress.update(static_cast<double>(tick_) / ticks_,
                       fmt::format("{:.3f} s: advance {}, {:.1f} mm, {} pieces", time, tear_.advances().size(),
                                   1e3 * advance.length, advance.pieces));
     });
+    if (report.let_go)
+      spdlog::warn("{:.3f} s: the hand has let go: what it held has come off, or lost its support", time);
     if (written) written = output_.write_tick(tear_, time, hand, report);
     if (!written) return fail(std::move(written.error()));
     return report.trouble;
@@ -97,16 +82,11 @@ int tear(const SceneOptions& options, const Common& common) {
   const scene::TearProblem& problem = *built;
   log_remarks(problem.notes, problem.warnings);
   const double read_seconds = watch.seconds();
-  Expected<std::unique_ptr<TearSession>> made =
-      TearSession::make(problem.mesh, settings_of(problem), cracks_of(problem));
-  if (!made) return report(problem.fracture.place.fail(made.error().what, made.error().remedy).value());
-  TearSession& tear = **made;
+  Expected<TearStart> start = start_tear(problem);
+  if (!start) return report(start.error());
+  log_remarks({}, start->warnings);
+  TearSession& tear = *start->tear;
   const double build_seconds = watch.seconds() - read_seconds;
-  // What the first pull cannot take hold of is a mistake in the scene.
-  const scene::PullSettings& first = problem.pulls.front();
-  if (const Expected<void> holds = tear.grasp(first.at); !holds)
-    return report(first.place.fail(holds.error().what, holds.error().remedy).value());
-  tear.let_go();
   Expected<TearOutput> output = TearOutput::open(options.folder());
   if (!output) return report(output.error());
   say(common, "{}\nbody            {} nodes, {} tets; model linear\ntears by        {}, {}\n", problem.title,
@@ -120,11 +100,12 @@ int tear(const SceneOptions& options, const Common& common) {
   }
   Expected<void> written;
   if (!why) written = fail(std::move(why.error()));
+  if (written) written = output->write_result(tear, problem.title);
   nlohmann::ordered_json summary;
   if (written) {
-    summary = make_tear_summary(problem, options.scene, tear, *output, *why,
+    summary = make_tear_summary(problem, start->warnings, options.scene, tear, *output, *why,
                                 {.read = read_seconds, .build = build_seconds, .total = watch.seconds()});
-    written = output->close(tear, summary);
+    written = output->write_summary(summary);
   }
   if (!written) {
     report(written.error());

@@ -35,9 +35,8 @@ Expected<TearOutput> TearOutput::open(const std::filesystem::path& path) {
 Expected<void> TearOutput::write_topology(session::TearSession& tear, double time) {
   VectorX u;
   tear.displacement(u);
-  for (Eigen::Index node = 0; node < u.size() / 3; ++node)
-    largest_move_ = std::max(largest_move_, u.segment<3>(3 * node).norm());
-  if (tear.body().topology() > 0) advance_time_.push_back(time);
+  note_displacement(u);
+  if (time > 0.0) advance_time_.push_back(time);
   return folder_.write_topology(tear.body().topology(), tear.body().mesh(), fields_of(tear, u));
 }
 
@@ -54,9 +53,15 @@ Expected<void> TearOutput::write_tick(session::TearSession& tear, double time, c
   return {};
 }
 
-Expected<void> TearOutput::close(session::TearSession& tear, const nlohmann::ordered_json& summary) {
+void TearOutput::note_displacement(const VectorX& u) {
+  for (Eigen::Index node = 0; node < u.size() / 3; ++node)
+    largest_move_ = std::max(largest_move_, u.segment<3>(3 * node).norm());
+}
+
+Expected<void> TearOutput::write_result(session::TearSession& tear, const std::string& title) {
   VectorX u;
   tear.displacement(u);
+  note_displacement(u);
   if (Expected<void> written = folder_.write_result(tear.body().mesh(), fields_of(tear, u)); !written) return written;
   const auto series = [&](const std::string& name, const auto& component) {
     result::ChartSeries line;
@@ -67,17 +72,15 @@ Expected<void> TearOutput::close(session::TearSession& tear, const nlohmann::ord
   };
   result::Chart chart;
   chart.title = "Force on the hand";
-  chart.subtitle = summary["title"].get<std::string>();
+  chart.subtitle = title;
   chart.x.label = "time / s";
   chart.y.label = "force / N";
   chart.series.push_back(series("magnitude", [](const Vec3& f) { return f.norm(); }));
   for (Eigen::Index c = 0; c < 3; ++c)
     chart.series.push_back(series(std::string(1, "xyz"[c]), [c](const Vec3& f) { return f[c]; }));
   chart.marks.push_back({"advance of the crack", advance_time_});
-  if (!time_.empty()) {
-    if (Expected<void> written = result::write_chart(folder_.path() / "force.svg", chart); !written) return written;
-  }
-  return folder_.write_summary(summary);
+  if (time_.empty()) return {};
+  return result::write_chart(folder_.path() / "force.svg", chart);
 }
 
 }  // namespace rhexis::apps

@@ -3,6 +3,7 @@
 /// The folder that `rhexis tear` leaves behind (docs/results.md): every topology as VTU and VTKHDF, the series of them,
 /// the force trace as CSV and SVG, the last state and summary.json.
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -26,14 +27,19 @@ class TearOutput {
   /// A line of force.csv. The file grows line by line, so that a killed run keeps what it measured.
   Expected<void> write_tick(session::TearSession& tear, double time, const Vec3& hand,
                             const session::TickReport& report);
-  /// result.vtkhdf, force.svg, summary.json.
-  Expected<void> close(session::TearSession& tear, const nlohmann::ordered_json& summary);
+  /// A force on the hand that no tick ends with: that before an advance.
+  void note_force(const Vec3& force) { largest_force_ = std::max(largest_force_, force.norm()); }
+  /// result.vtkhdf, the body as it is now, and force.svg.
+  Expected<void> write_result(session::TearSession& tear, const std::string& title);
+  Expected<void> write_summary(const nlohmann::ordered_json& summary) { return folder_.write_summary(summary); }
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
   [[nodiscard]] double largest_force() const { return largest_force_; }        ///< N
-  [[nodiscard]] double largest_displacement() const { return largest_move_; }  ///< m, over the topologies written
+  [[nodiscard]] double largest_displacement() const { return largest_move_; }  ///< m, over the states written
 
  private:
+  void note_displacement(const VectorX& u);
+
   explicit TearOutput(result::ResultFolder folder) : folder_(std::move(folder)) {}
 
   result::ResultFolder folder_;
@@ -52,9 +58,12 @@ struct TearTimes {
 };
 
 /// `why`: empty when the script came to its end.
-[[nodiscard]] nlohmann::ordered_json make_tear_summary(const scene::TearProblem& problem, const std::string& scene,
-                                                       session::TearSession& tear, const TearOutput& output,
-                                                       const std::string& why, const TearTimes& times);
+/// `warnings`: beside those of the problem.
+[[nodiscard]] nlohmann::ordered_json make_tear_summary(const scene::TearProblem& problem,
+                                                       const std::vector<std::string>& warnings,
+                                                       const std::string& scene, session::TearSession& tear,
+                                                       const TearOutput& output, const std::string& why,
+                                                       const TearTimes& times);
 void print_tear_outcome(const nlohmann::ordered_json& summary, const std::filesystem::path& out);
 
 }  // namespace rhexis::apps

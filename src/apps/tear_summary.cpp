@@ -43,8 +43,9 @@ ordered_json advance_json(const session::AdvanceRecord& advance) {
 
 }  // namespace
 
-ordered_json make_tear_summary(const scene::TearProblem& problem, const std::string& scene, session::TearSession& tear,
-                               const TearOutput& output, const std::string& why, const TearTimes& times) {
+ordered_json make_tear_summary(const scene::TearProblem& problem, const std::vector<std::string>& warnings,
+                               const std::string& scene, session::TearSession& tear, const TearOutput& output,
+                               const std::string& why, const TearTimes& times) {
   ordered_json advances = ordered_json::array();
   double lost = 0.0;
   for (const session::AdvanceRecord& advance : tear.advances()) {
@@ -81,6 +82,7 @@ ordered_json make_tear_summary(const scene::TearProblem& problem, const std::str
   summary["memory"] = {{"response", tear.memory_bytes()}, {"peak", result::peak_memory_bytes()}};
   summary["notes"] = problem.notes;
   summary["warnings"] = problem.warnings;
+  for (const std::string& warning : warnings) summary["warnings"].push_back(warning);
   summary["versions"] = result::versions();
   return summary;
 }

@@ -24,7 +24,7 @@ struct TearProblem {
   std::vector<std::string> notes;     ///< one line each
 };
 
-/// What makes a scene one for `rhexis tear`: it says when the body tears.
+/// What makes a scene one for `rhexis tear`: it says when the body tears, and pulls at it.
 [[nodiscard]] bool is_for_tearing(const Scene& scene);
 
 /// Reads or generates the mesh and holds the scene against it. Errors beside those of build_problem: no `[fracture]`,

@@ -30,7 +30,8 @@ TickReport TearSession::tick(const Vec3& hand, const Observer& observer) {
   bool tears = true;
   while (tears && report.advances < kMostAdvancesPerTick && report.trouble.empty()) {
     tears = false;
-    for (std::size_t crack = 0; crack < cracks_.size() && report.trouble.empty(); ++crack) {
+    for (std::size_t crack = 0; crack < cracks_.size(); ++crack) {
+      if (report.advances == kMostAdvancesPerTick || !report.trouble.empty()) break;
       if (const std::optional<Judged> judged = judge(crack)) tears = run_on(crack, *judged, report, observer) || tears;
     }
     if (local_.empty() && report.trouble.empty()) tears = start_crack(report, observer);
@@ -110,21 +111,27 @@ bool TearSession::start_crack(TickReport& report, const Observer& observer) {
   const Stopwatch watch;
   VectorX u;
   displacement(u);
-  const std::optional<fracture::InitialCrack> start =
+  std::optional<fracture::InitialCrack> start =
       fracture::start_crack(body_, surface_stresses(u), *settings_.strength, surroundings_);
   if (!start) return false;
+  std::optional<Change> change = beginning(std::move(*start));
+  if (!change) return false;
+  change->seconds = watch.seconds();
+  return take(std::move(*change), report, observer);
+}
+
+std::optional<TearSession::Change> TearSession::beginning(fracture::InitialCrack start) const {
   Change change;
-  change.incision = fracture::incise(body_, surroundings_, start->surface, incision_settings());
-  if (change.incision.edit.empty()) return false;
+  change.incision = fracture::incise(body_, surroundings_, start.surface, incision_settings());
+  if (change.incision.edit.empty()) return std::nullopt;
   change.record.started = true;
   change.crack = cracks_.size();
-  change.next_cracks = [&] {
+  change.next_cracks = [this, begun = std::move(start.cracks)] {
     std::vector<fracture::Crack> next = cracks_;
-    next.insert(next.end(), start->cracks.begin(), start->cracks.end());
+    next.insert(next.end(), begun.begin(), begun.end());
     return next;
   };
-  change.seconds = watch.seconds();
-  return take(std::move(change), report, observer);
+  return change;
 }
 
 bool TearSession::take(Change change, TickReport& report, const Observer& observer) {

@@ -20,7 +20,9 @@ TearSession::TearSession(mesh::TetMesh mesh, TearSettings settings)
   if (settings_.criterion.empty())
     settings_.criterion = surroundings_.is_plate() ? "maximum-principal" : "maximum-hoop";
   held_.assign(3 * mesh.node_count(), 0);
-  for (const model::PrescribedDof& support : settings_.body.supports) held_[static_cast<std::size_t>(support.dof)] = 1;
+  supported_.assign(mesh.node_count(), 0);
+  for (const model::PrescribedDof& support : settings_.body.supports)
+    held_[static_cast<std::size_t>(support.dof)] = supported_[static_cast<std::size_t>(support.dof / 3)] = 1;
   pieces_ = fracture::find_pieces(body_, held_);
   body_force_ = settings_.body.density * settings_.body.gravity;
   const VectorX& force = settings_.body.dead_force;
@@ -46,7 +48,7 @@ Expected<std::unique_ptr<TearSession>> TearSession::make(mesh::TetMesh mesh, Tea
   if (all.toughness && cracks.empty())
     return fail("a toughness says when a crack runs on, not where one starts", "add a [[crack]], or give a strength");
   for (const CrackLine& line : cracks)
-    if (Expected<void> done = session->open(line); !done) return fail(std::move(done.error()));
+    if (Expected<void> done = session->open(line); !done) return fail(done.error().at(line.file, line.line));
 
   response::ExactSettings exact;
   exact.body = all.body;
@@ -61,19 +63,10 @@ Expected<std::unique_ptr<TearSession>> TearSession::make(mesh::TetMesh mesh, Tea
 Expected<void> TearSession::open(const CrackLine& line) {
   Expected<fracture::InitialCrack> start = fracture::make_crack(line.from, line.to, line.through, surroundings_);
   if (!start) return fail(std::move(start.error()));
-  Change change;
-  change.incision = fracture::incise(body_, surroundings_, start->surface, incision_settings());
-  if (change.incision.edit.empty())
-    return fail("the crack cuts no edge of the mesh", "a longer crack, or a finer mesh");
-  change.record.started = true;
-  change.crack = cracks_.size();
-  change.next_cracks = [&] {
-    std::vector<fracture::Crack> next = cracks_;
-    next.insert(next.end(), start->cracks.begin(), start->cracks.end());
-    return next;
-  };
+  std::optional<Change> change = beginning(std::move(*start));
+  if (!change) return fail("the crack cuts no edge of the mesh", "a longer crack, or a finer mesh");
   TickReport report;
-  take(std::move(change), report, {});
+  take(std::move(*change), report, {});
   return {};
 }
 
@@ -90,6 +83,10 @@ void TearSession::let_go() {
 
 bool TearSession::undo() {
   if (cracks_before_.empty()) return false;
+  const std::size_t remaining = body_.mesh().node_count() - body_.history().back().copied.size();
+  const auto held = hand_.nodes();
+  if (std::any_of(held.begin(), held.end(), [&](NodeId node) { return node.index() >= remaining; }))
+    hand_.let_go(*response_);
   const mesh::MeshEdit edit = take_back(cracks_before_.back());
   cracks_before_.pop_back();
   advances_.pop_back();
@@ -112,10 +109,11 @@ void TearSession::follow_nodes() {
   const std::size_t nodes = body_.mesh().node_count();
   const std::size_t known = held_.size() / 3;
   held_.resize(3 * nodes, 0);
+  supported_.resize(nodes, 0);
   for (std::size_t node = known; node < nodes; ++node) {
     const std::size_t parent = body_.original(NodeId(node)).index();
-    std::copy_n(held_.begin() + static_cast<std::ptrdiff_t>(3 * parent), 3,
-                held_.begin() + static_cast<std::ptrdiff_t>(3 * node));
+    for (std::size_t c = 0; c < 3; ++c) held_[3 * node + c] = held_[3 * parent + c];
+    supported_[node] = supported_[parent];
   }
   if (!node_force_.empty()) node_force_.resize(nodes, Vec3::Zero());
 }
@@ -124,14 +122,11 @@ void TearSession::make_local_objects() {
   if (!response_) return;  // the first cracks are still being cut
   running_.clear();
   local_.clear();
-  std::vector<std::uint8_t> supported(body_.mesh().node_count());
-  for (std::size_t node = 0; node < supported.size(); ++node)
-    supported[node] = held_[3 * node] | held_[3 * node + 1] | held_[3 * node + 2];
   for (std::size_t crack = 0; crack < cracks_.size(); ++crack) {
     if (cracks_[crack].finished) continue;
     running_.push_back(crack);
     local_.emplace_back(body_, settings_.body.elastic, surroundings_.tets_near(body_, cracks_[crack], radius_of(crack)),
-                        supported, hand_.nodes(), fracture::LocalLoads{body_force_, node_force_});
+                        supported_, hand_.nodes(), fracture::LocalLoads{body_force_, node_force_});
   }
   solve_local_objects();
   surface_tets_.clear();
@@ -170,9 +165,7 @@ fracture::IncisionSettings TearSession::incision_settings() const {
   settings.method = settings_.incision;
   settings.mean_edge = mean_edge();
   settings.smallest_radius_ratio = smallest_radius_ratio_;
-  settings.immovable.resize(body_.mesh().node_count());
-  for (std::size_t node = 0; node < settings.immovable.size(); ++node)
-    settings.immovable[node] = held_[3 * node] | held_[3 * node + 1] | held_[3 * node + 2];
+  settings.immovable = supported_;
   for (const NodeId node : hand_.nodes()) settings.immovable[node.index()] = 1;
   return settings;
 }
@@ -191,6 +184,8 @@ std::vector<response::Focus> TearSession::foci() const {
     if (direction.norm() > 0.0) focus.direction = direction.normalized();
     for (const fracture::FrontPoint& point : front)
       focus.half_length = std::max(focus.half_length, (point.position - focus.centre).norm());
+    const Vec3 along = front.back().position - front.front().position;
+    if (along.norm() > 0.0) focus.tangent = along.normalized();
     focus.radius = radius_of(crack);
     out.push_back(focus);
   }

@@ -39,8 +39,8 @@ class TearSession {
   /// Called after each topology change.
   using Observer = std::function<void(const AdvanceRecord&)>;
 
-  /// The body under its loads, with its first cracks cut. Errors say what is wrong in the user's words, without a
-  /// place: a crack that misses the body, a body that its cracks leave without support.
+  /// The body under its loads, with its first cracks cut. Errors say what is wrong in the user's words, with the place
+  /// of the crack that they are about: a crack that misses the body, a body that its cracks leave unstable.
   static Expected<std::unique_ptr<TearSession>> make(mesh::TetMesh mesh, TearSettings settings,
                                                      const std::vector<CrackLine>& cracks);
 
@@ -52,7 +52,8 @@ class TearSession {
   /// The crack runs on by `length` (m) along `direction` (unit, normal to its front), whatever the criterion says: what
   /// experiments need that prescribe the path. The hand stays where it is. `crack` must not be finished.
   TickReport impose(std::size_t crack, const Vec3& direction, double length, const Observer& observer = {});
-  /// Takes the last topology change back, the crack with it. False: none is left.
+  /// Takes the last topology change back, the crack with it; a hand that holds a node which goes with it lets go.
+  /// False: none is left.
   bool undo();
 
   [[nodiscard]] const TearSettings& settings() const { return settings_; }
@@ -89,6 +90,8 @@ class TearSession {
   [[nodiscard]] std::optional<Judged> judge(std::size_t crack) const;
   bool run_on(std::size_t crack, Judged judged, TickReport& report, const Observer& observer);
   bool start_crack(TickReport& report, const Observer& observer);
+  /// Of a crack that begins; empty when it would cut nothing.
+  [[nodiscard]] std::optional<Change> beginning(fracture::InitialCrack start) const;
   bool take(Change change, TickReport& report, const Observer& observer);
 
   Expected<void> open(const CrackLine& line);
@@ -111,6 +114,7 @@ class TearSession {
   std::unique_ptr<response::Response> response_;  ///< made when the first cracks are cut
   double smallest_radius_ratio_ = 0.0;            ///< of the intact body
   std::vector<std::uint8_t> held_;                ///< 3 per node, copies too: a support gives this component
+  std::vector<std::uint8_t> supported_;           ///< per node: it gives some component
   Vec3 body_force_ = Vec3::Zero();                ///< N/m^3
   std::vector<Vec3> node_force_;                  ///< N, per node; empty without such loads
 

@@ -56,7 +56,15 @@ TEST(TearCommand, WritesEveryTopologyTheTraceAndTheSummary) {
     EXPECT_THAT(series, HasSubstr(name + ".vtu"));
   }
   EXPECT_TRUE(fs::exists(out / "force.svg"));
-  EXPECT_TRUE(fs::exists(out / "result.vtkhdf"));
+  const Expected<mesh::MeshFile> result = mesh::read_mesh_file(out / "result.vtkhdf");
+  ASSERT_TRUE(result) << result.error().message();
+  // As it stands at the last tick: the hand has moved by 0.12 m, and its point with it.
+  const std::vector<double>& u = field_of(*result, "displacement").values;
+  double most = 0.0;
+  for (std::size_t n = 0; n < u.size(); n += 3) most = std::max(most, Vec3(u[n], u[n + 1], u[n + 2]).norm());
+  EXPECT_GT(most, 0.1);
+  EXPECT_GE(summary["max_displacement"].get<double>(), most);
+  EXPECT_GE(summary["largest_force"].get<double>(), vector_of(advances[1]["force_before"]).norm());
 
   std::ifstream trace(out / "force.csv");
   std::string line;
@@ -119,6 +127,25 @@ TEST(TearCommand, BadInputIsOneLineAndWritesNothing) {
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
     EXPECT_FALSE(fs::exists(out)) << bad.set;
   }
+}
+
+TEST(TearCommand, CheckRefusesWhatTearRefuses) {
+  for (const char* set : {"--set crack.0.to=[0.5,0.5,0]", "--set pull.0.at=[0.24,0.1,0]"}) {
+    const test::Ran ran = test::run_rhexis(std::string("check scenes/plate-tear.toml ") + set);
+    EXPECT_EQ(ran.code, 2) << set;
+    EXPECT_THAT(ran.err, HasSubstr("rhexis: ")) << set;
+  }
+  EXPECT_EQ(test::run_rhexis("check scenes/plate-tear.toml").code, 0);
+}
+
+TEST(TearCommand, SaysWhenTheHandLetsGo) {
+  const fs::path out = test::fresh_folder("tear-let-go");
+  const test::Ran ran = tear(
+      "--set fracture.criterion=maximum-hoop --set fracture.strength=0.02e6 --set "
+      "fracture.advance_threshold=0.02e6",
+      out);
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("s: the hand has let go"));
 }
 
 TEST(TearCommand, JsonIsAllThatStdoutHolds) {

@@ -139,6 +139,25 @@ TEST(TearSession, AnImposedAdvanceIsTheOneThatTheCriterionWouldMake) {
   }
 }
 
+TEST(TearSession, UndoTakesTheHandOffNodesThatGo) {
+  PlateCase plate;
+  plate.settings.incision = fracture::IncisionMethod::split;
+  plate.settings.strength = 1.0e12;
+  const auto tear = plate.make();
+  ASSERT_TRUE(tear->body().mesh().node_count() > plate.mesh.node_count());
+  // The two flanks lie on each other: one of the two nodes there is a copy, and a point beside it holds it.
+  int let_go = 0;
+  for (const double aside : {-1e-4, 1e-4}) {
+    const auto one = plate.make();
+    ASSERT_TRUE(one->grasp(Vec3(0.12 + aside, 0.0, 0.0)).has_value());
+    ASSERT_TRUE(one->undo());
+    if (!one->hand().holds()) ++let_go;
+    const TickReport report = one->tick(Vec3(-1e-4, 0.0, 0.0));
+    EXPECT_TRUE(report.force.allFinite());
+  }
+  EXPECT_EQ(let_go, 1);
+}
+
 /// The mirror image in x, with the numbering kept.
 PlateCase mirrored(PlateCase plate) {
   const auto flip = [](const Vec3& x) { return Vec3(0.24 - x.x(), x.y(), x.z()); };

@@ -1,0 +1,62 @@
+#include "apps/tear_start.h"
+
+namespace rhexis::apps {
+namespace {
+
+session::TearSettings settings_of(const scene::TearProblem& problem) {
+  const scene::FractureSettings& fracture = problem.fracture;
+  return {
+      .body = problem.body,
+      .criterion = fracture.criterion.value_or(""),
+      .strength = fracture.strength,
+      .toughness = fracture.toughness,
+      .advance_threshold = fracture.advance_threshold.value_or(0.0),
+      .ahead_only = fracture.ahead_only,
+      .local_radius = fracture.local_radius.value_or(0.0),
+      .incision = fracture.incision == "split" ? fracture::IncisionMethod::split : fracture::IncisionMethod::keep_nodes,
+      .contact = problem.interaction.blend_contact ? response::ContactRule::blend : response::ContactRule::consistent};
+}
+
+std::vector<session::CrackLine> cracks_of(const scene::TearProblem& problem) {
+  std::vector<session::CrackLine> lines;
+  for (const scene::CrackSettings& crack : problem.cracks)
+    lines.push_back({crack.from, crack.to, crack.through, crack.place.file ? *crack.place.file : "", crack.place.line});
+  return lines;
+}
+
+std::string placed(const scene::Place& place, const std::string& text) { return place.fail(text).value().message(); }
+
+}  // namespace
+
+Expected<TearStart> start_tear(const scene::TearProblem& problem) {
+  TearStart start;
+  Expected<std::unique_ptr<session::TearSession>> made =
+      session::TearSession::make(problem.mesh, settings_of(problem), cracks_of(problem));
+  if (!made) {
+    const scene::Place& place = problem.fracture.place;
+    return fail(made.error().at(place.file ? *place.file : "", place.line));
+  }
+  start.tear = std::move(*made);
+  session::TearSession& tear = *start.tear;
+
+  std::size_t frozen = 0;
+  for (const mesh::MeshEdit& edit : tear.body().history()) frozen += edit.frozen.size();
+  if (frozen > 0)
+    start.warnings.push_back(placed(problem.cracks.front().place,
+                                    fmt::format("the cracks leave {} of {} tets without support: they are frozen",
+                                                frozen, problem.mesh.tet_count())));
+  for (const scene::PullSettings& pull : problem.pulls) {
+    if (const Expected<void> holds = tear.grasp(pull.at); !holds)
+      return pull.place.fail(holds.error().what, holds.error().remedy);
+    const double away = (tear.hand().point().position - pull.at).norm();
+    if (away > tear.mean_edge())
+      start.warnings.push_back(placed(
+          pull.place, fmt::format("the surface that the hand takes hold of is {:.3g} m from 'at', more than an edge of "
+                                  "the mesh",
+                                  away)));
+  }
+  tear.let_go();
+  return start;
+}
+
+}  // namespace rhexis::apps

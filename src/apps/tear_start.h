@@ -1,0 +1,22 @@
+#pragma once
+
+/// From a scene to a session that is ready to be pulled at: what `rhexis tear` begins with and `rhexis check` tries.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/tear_problem.h"
+#include "session/tear_session.h"
+
+namespace rhexis::apps {
+
+struct TearStart {
+  std::unique_ptr<session::TearSession> tear;
+  std::vector<std::string> warnings;  ///< one line each, placed
+};
+
+/// Cuts the first cracks, factors, and takes hold of the point of every pull once. Errors are placed.
+[[nodiscard]] Expected<TearStart> start_tear(const scene::TearProblem& problem);
+
+}  // namespace rhexis::apps
