@@ -68,6 +68,21 @@ Surroundings::Interval clip(const std::array<Vec3, 4>& x, const Vec3& a, const V
   return part;
 }
 
+/// The part of the way a..b in the box; empty (from > to) when there is none.
+Surroundings::Interval clip(const mesh::BoundingBox& box, const Vec3& a, const Vec3& b) {
+  Surroundings::Interval part{0.0, 1.0};
+  for (int k = 0; k < 3; ++k) {
+    for (const double side : {1.0, -1.0}) {
+      const double va = side > 0.0 ? a[k] - box.from[k] : box.to[k] - a[k];
+      const double vb = side > 0.0 ? b[k] - box.from[k] : box.to[k] - b[k];
+      if (va < 0.0 && vb < 0.0) return {1.0, 0.0};
+      if (va < 0.0) part.from = std::max(part.from, va / (va - vb));
+      if (vb < 0.0) part.to = std::min(part.to, va / (va - vb));
+    }
+  }
+  return part;
+}
+
 bool is_thin_extrusion(const mesh::TetMesh& mesh, const std::vector<mesh::TetFace>& surface,
                        const mesh::BoundingBox& box) {
   const Vec3 size = box.size();
@@ -196,19 +211,24 @@ std::vector<TetId> Surroundings::tets_meeting(const mesh::TornMesh& body, const 
 }
 
 std::vector<Surroundings::Interval> Surroundings::inside(const Vec3& a, const Vec3& b) const {
-  // In pieces, so that the boxes around them stay small beside the body.
+  // Near the body, however long the line; and in pieces, so that the boxes around them stay small beside the body.
+  const Vec3 margin = Vec3::Constant(mean_edge_);
+  const Interval near = clip(mesh::BoundingBox{box_.from - margin, box_.to + margin}, a, b);
+  if (!(near.from <= near.to)) return {};
   const double length = (b - a).norm();
-  const int pieces = std::max(1, static_cast<int>(std::ceil(length / (4.0 * cell_))));
+  const double share = near.to - near.from;
+  const int pieces = std::max(1, static_cast<int>(std::ceil(share * length / (4.0 * cell_))));
+  const auto place = [&](double piece) { return near.from + share * (piece / pieces); };  // part of the way
   std::vector<Interval> parts;
   const Vec3 wide = Vec3::Constant(reach_);
   for (int piece = 0; piece < pieces; ++piece) {
-    const Vec3 from = a + (b - a) * (static_cast<double>(piece) / pieces);
-    const Vec3 to = a + (b - a) * (static_cast<double>(piece + 1) / pieces);
+    const Vec3 from = a + (b - a) * place(piece);
+    const Vec3 to = a + (b - a) * place(piece + 1);
     visit(from.cwiseMin(to) - wide, from.cwiseMax(to) + wide, [&](TetId tet) {
       std::array<Vec3, 4> x;
       for (std::size_t k = 0; k < 4; ++k) x[k] = nodes_[tets_[tet.index()][k].index()];
       const Interval part = clip(x, from, to);
-      if (part.to >= part.from) parts.push_back({(piece + part.from) / pieces, (piece + part.to) / pieces});
+      if (part.to >= part.from) parts.push_back({place(piece + part.from), place(piece + part.to)});
     });
   }
   std::sort(parts.begin(), parts.end(),

@@ -19,12 +19,20 @@ constexpr int kHalfDiscPoints = 7;
 /// Lengths below this part of the body's size, and sines below it, are none.
 constexpr double kNothing = 1e-9;
 
+/// The point of the line through `at` along `tangent` nearest to the middle of the body: `at` may be anywhere along it.
+Vec3 beside_middle(const Vec3& at, const Vec3& tangent, const Surroundings& surroundings) {
+  const Vec3 middle = 0.5 * (surroundings.box().from + surroundings.box().to);
+  return at + (middle - at).dot(tangent) * tangent;
+}
+
 /// The cracks of the stretches of the line through `at` along `tangent` in the body.
 std::vector<Crack> fronts_on_line(const Vec3& at, const Vec3& tangent, const Vec3& direction,
                                   const Surroundings& surroundings) {
-  const double far = surroundings.box().size().norm() + (at - surroundings.box().from).norm();
-  std::vector<FrontPoint> line(2);
-  for (std::size_t k = 0; k < 2; ++k) line[k] = {at + (k == 0 ? -far : far) * tangent, direction, tangent};
+  const double size = surroundings.box().size().norm();
+  const Vec3 beside = beside_middle(at, tangent, surroundings);
+  if (!((beside - surroundings.box().from).norm() <= 2.0 * size)) return {};  // far off, perhaps too far for squares
+  std::vector<FrontPoint> line(2);                                            // beyond the body both ways
+  for (std::size_t k = 0; k < 2; ++k) line[k] = {beside + (k == 0 ? -2.0 : 2.0) * size * tangent, direction, tangent};
   if (!surroundings.is_plate()) return settle(line, surroundings);
   std::vector<Crack> cracks;  // a plate keeps the two ends of its front
   for (const Surroundings::Interval& part : surroundings.inside(line[0].position, line[1].position)) {
@@ -36,18 +44,25 @@ std::vector<Crack> fronts_on_line(const Vec3& at, const Vec3& tangent, const Vec
   return cracks;
 }
 
-/// The plane from `from` to `to`, from one end of the body to the other along `tangent`.
-CutSurface plane_through(const Vec3& from, const Vec3& to, const Vec3& tangent, const Surroundings& surroundings) {
+/// The plane up to the front through a point, from `length` m behind it or where the body begins, from one end of the
+/// body to the other along `tangent`.
+CutSurface plane_through(const Vec3& through, const Vec3& direction, double length, const Vec3& tangent,
+                         const Surroundings& surroundings) {
+  const Vec3 to = beside_middle(through, tangent, surroundings);
   const double margin = kCutMargin * surroundings.mean_edge();
   double lowest = std::numeric_limits<double>::infinity();  // of the box's corners along the tangent, beside `to`
   double highest = -lowest;
+  double behind = 0.0;  // the same, back along the direction
   for (int corner = 0; corner < 8; ++corner) {
     Vec3 at = surroundings.box().from;
     for (int k = 0; k < 3; ++k)
       if ((corner >> k & 1) != 0) at[k] = surroundings.box().to[k];
     lowest = std::min(lowest, (at - to).dot(tangent));
     highest = std::max(highest, (at - to).dot(tangent));
+    behind = std::max(behind, (to - at).dot(direction));
   }
+  // A triangle that reaches far beyond the body knows its heights there only to rounding of its size.
+  const Vec3 from = to - std::min(length, behind + margin) * direction;
   const Vec3 down = (lowest - margin) * tangent;
   const Vec3 up = (highest + margin) * tangent;
   // Normal tangent x (to - from), as that of the front.
@@ -111,7 +126,7 @@ std::vector<Outside> outside_of(const mesh::TornMesh& body, TetId tet) {
 Expected<InitialCrack> make_crack(const Vec3& from, const Vec3& to, const Vec3& through,
                                   const Surroundings& surroundings) {
   const double size = surroundings.box().size().norm();
-  const double length = through.norm();
+  const double length = through.stableNorm();
   if (!(length > 0.0)) return fail("the crack goes through the body along no direction", "'through' is not zero");
   Vec3 tangent = through / length;
   if (surroundings.is_plate()) {
@@ -119,9 +134,9 @@ Expected<InitialCrack> make_crack(const Vec3& from, const Vec3& to, const Vec3& 
       return fail("the crack of a plate does not go through its thickness", "through = [0, 0, 1]");
   }
   const Vec3 way = (to - from) - (to - from).dot(tangent) * tangent;
-  if (!(way.norm() > kNothing * size))
+  if (!(way.stableNorm() > kNothing * size))
     return fail("the crack has no length", "'from' and 'to' lie apart, not only along 'through'");
-  const Vec3 direction = way.normalized();
+  const Vec3 direction = way.stableNormalized();
   // The normal decides the side of nodes that lie on the plane. Towards the middle of the body it mirrors with the
   // body.
   const Vec3 middle = 0.5 * (surroundings.box().from + surroundings.box().to);
@@ -139,7 +154,7 @@ Expected<InitialCrack> make_crack(const Vec3& from, const Vec3& to, const Vec3& 
     other = fronts_on_line(from, -tangent, -direction, surroundings);
   const double back = other.empty() ? kCutMargin * surroundings.mean_edge() : 0.0;
   out.cracks.insert(out.cracks.end(), other.begin(), other.end());
-  out.surface = plane_through(to - way - back * direction, to, tangent, surroundings);
+  out.surface = plane_through(to, direction, way.stableNorm() + back, tangent, surroundings);
   return out;
 }
 

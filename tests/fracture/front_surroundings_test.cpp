@@ -72,6 +72,22 @@ TEST(Surroundings, SaysWhereALineIsInside) {
   EXPECT_NEAR(edge[0].to, 0.4, 1e-6);
 }
 
+// A crack point may be given anywhere: the time goes with the body, and so does what is found of it.
+TEST(Surroundings, SaysWhereALineFromFarAwayIsInside) {
+  const Surroundings bar(*mesh::make_bar({Vec3(0.1, 0.1, 0.3)}, 800));
+  for (const double far : {1e6, 1e12}) {
+    const auto through = bar.inside(Vec3(-far, 0.03, 0.1), Vec3(far, 0.04, 0.2));
+    ASSERT_EQ(through.size(), 1u) << far;
+    // The way is known to the rounding of its ends, and a gap's 1e-7 of an edge.
+    const double rounding = 1e-8 + 4e-16 * far;
+    EXPECT_NEAR(2.0 * far * (through[0].to - through[0].from), 0.1, 4.0 * rounding) << far;
+    EXPECT_NEAR(-far + 2.0 * far * through[0].from, 0.0, 4.0 * rounding) << far;
+    EXPECT_TRUE(bar.inside(Vec3(0.05, 0.05, 0.4), Vec3(0.05, 0.05, far)).empty()) << far;
+    EXPECT_TRUE(bar.inside(Vec3(-far, -far, far), Vec3(far, -far, -far)).empty()) << far;
+    EXPECT_FALSE(bar.is_inside(Vec3(far, 0.05, 0.15))) << far;
+  }
+}
+
 TEST(Surroundings, SeesTheHoleOfATube) {
   const Surroundings tube(*mesh::make_tube({.radius = 0.005, .length = 0.04, .wall = 0.001, .bend = 0.0}, 1500));
   const auto parts = tube.inside(Vec3(-0.01, 0.0003, 0.02), Vec3(0.01, 0.0003, 0.02));

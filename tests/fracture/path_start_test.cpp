@@ -62,6 +62,27 @@ TEST(MakeCrack, ThroughATubeStandsInBothWalls) {
   }
 }
 
+TEST(MakeCrack, ReachesFromFarAway) {
+  CutBody cut(bar());
+  const Vec3 to(0.05, 0.04, 0.15);
+  const auto near = make_crack(Vec3(0.05, -1.0, 0.15), to, Vec3::UnitX(), cut.surroundings);
+  ASSERT_TRUE(near);
+  for (const double far : {1e6, 1e12}) {
+    // Behind the body, and along the front: the same crack.
+    for (const auto& [from, end] :
+         {std::pair{Vec3(0.05, -far, 0.15), to}, {Vec3(far, -1.0, 0.15), Vec3(-far, 0.04, 0.15)}}) {
+      const auto start = make_crack(from, end, Vec3::UnitX(), cut.surroundings);
+      ASSERT_TRUE(start) << far;
+      EXPECT_EQ(start->cracks.size(), 1u);
+      EXPECT_EQ(start->cracks[0].front.size(), near->cracks[0].front.size());
+      EXPECT_EQ(cut.incise(start->surface).edit.removed, cut.incise(near->surface).edit.removed);
+    }
+    // Ahead of the body, or past it: no front in it.
+    for (const Vec3& end : {Vec3(0.05, far, 0.15), Vec3(0.05, 0.04, far), Vec3(far, far, far)})
+      EXPECT_FALSE(make_crack(Vec3(0.05, 0.0, 0.15), end, Vec3::UnitX(), cut.surroundings)) << far;
+  }
+}
+
 TEST(MakeCrack, SaysWhatIsWrong) {
   const Surroundings body(plate());
   const auto message = [&](const Vec3& from, const Vec3& to, const Vec3& through) {
