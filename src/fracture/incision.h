@@ -27,14 +27,14 @@ struct IncisionSettings {
   IncisionMethod method = IncisionMethod::keep_nodes;
   double mean_edge = 0.0;               ///< m, of the intact mesh
   double smallest_radius_ratio = 0.0;   ///< of the intact mesh
-  std::vector<std::uint8_t> immovable;  ///< per node of the mesh: supported or held by the hand; those stay where they
-                                        ///< are. Copies inherit by original().
+  std::vector<std::uint8_t> immovable;  ///< per node of the present mesh, copies included: supported or held by the
+                                        ///< hand; those stay where they are. A copy may be held and its original not.
 };
 
 struct Incision {
-  mesh::MeshEdit edit;       ///< without `frozen`: see pieces.h. Empty when the surface meets no edge
-  int edges_cut = 0;         ///< edges that the surface crosses, less those at which the same crack has been
-  int nodes_off_plane = 0;   ///< ends of those edges that could not be brought to the plane
+  mesh::MeshEdit edit;      ///< without `frozen`: see pieces.h. Empty when nothing is removed and nothing comes apart
+  int edges_cut = 0;        ///< edges that the surface crosses, less those at which the same crack has been; 0 if empty
+  int nodes_off_plane = 0;  ///< ends of those edges that could not be brought to the plane
   double volume_lost = 0.0;  ///< m^3, before minus after
 };
 
@@ -43,8 +43,9 @@ struct Incision {
 /// tets are sorted by side, and the nodes between the sides are doubled; no volume is lost but what snapping moves.
 /// In both a move that would invert or flatten a remaining tet is shortened, made by the other end, or left; a node
 /// that is immovable or of a frozen piece stays. Both join on to what edits of the body swept before: a crack that runs
-/// on advance by advance, turning, parts what a single cut along its whole surface would. A surface that met no edge is
-/// not remembered: make it longer, or add it to the next. `surroundings` have followed all edits of the body: what an
+/// on advance by advance, turning, parts what a single cut along its whole surface would. A surface that
+/// opens nothing (it meets no edge; or no face comes free of the front, or all that it meets is open already) is not
+/// remembered: make it longer, or add it to the next. `surroundings` have followed all edits of the body: what an
 /// incision costs grows with the surface, not with the body.
 [[nodiscard]] Incision incise(const mesh::TornMesh& body, const Surroundings& surroundings, const CutSurface& surface,
                               const IncisionSettings& settings);

@@ -21,7 +21,7 @@ const Vec3& NodeMoves::position(NodeId node) const {
 }
 
 bool NodeMoves::is_movable(NodeId node) const {
-  if (settings_.immovable[body_.original(node).index()] != 0) return false;
+  if (settings_.immovable[node.index()] != 0) return false;
   const auto tets = body_.tets_around(node);
   return std::none_of(tets.begin(), tets.end(), [&](TetId tet) { return body_.is_frozen(tet); });
 }

@@ -202,7 +202,7 @@ Incision cut_along(const mesh::TornMesh& body, const Surroundings& surroundings,
   const double edge = surroundings.mean_edge();
   Incision incision = incise(body, surroundings, sweep(crack, advance, kCutMargin * edge), settings);
   for (int longer = 0; longer < kMostLengthenings; ++longer) {
-    if (incision.edges_cut > 0 || has_left(crack, advance, surroundings)) break;
+    if (!incision.edit.empty() || has_left(crack, advance, surroundings)) break;
     lengthen(crack, advance, kLengthening * edge);
     if (!crack.uniform) end_on_surface(crack, advance.step, surroundings);
     describe(crack, advance);

@@ -1,7 +1,7 @@
 #pragma once
 
 /// From what the criterion says at the points of a front to the surface that the crack sweeps, and the front after it.
-/// One tick: judge_front -> plan_advance -> cut_along (sweep, incise; longer until an edge is cut) -> the body takes
+/// One tick: judge_front -> plan_advance -> cut_along (sweep, incise; longer until something opens) -> the body takes
 /// the edit -> advanced.
 
 #include <optional>
@@ -43,14 +43,14 @@ struct Advance {
 /// those of the front: upper flank above.
 [[nodiscard]] CutSurface sweep(const Crack& crack, const Advance& advance, double margin);
 
-/// What cut_along reaches beyond the ends of a front, and how much longer it makes an advance that cuts no edge, in
-/// mean edges; and how many times.
+/// What cut_along reaches beyond the ends of a front, and how much longer it makes an advance that opens nothing,
+/// in mean edges; and how many times.
 inline constexpr double kCutMargin = 0.5;
 inline constexpr double kLengthening = 0.25;
 inline constexpr int kMostLengthenings = 12;
 
-/// The incision along an advance, which is made longer until at least one edge is cut or the front has left the body.
-/// `advance` is what was done. An empty edit: nothing was there to cut.
+/// The incision along an advance, which is made longer until it opens something or the front has left the body.
+/// `advance` is what was done. An empty edit: nothing is there to cut, and the crack is finished.
 [[nodiscard]] Incision cut_along(const mesh::TornMesh& body, const Surroundings& surroundings, const Crack& crack,
                                  Advance& advance, const IncisionSettings& settings);
 

@@ -87,8 +87,8 @@ Incision incise_splitting(const mesh::TornMesh& body, const Surroundings& surrou
   std::vector<CrossedEdge> edges = crossed_edges(snapping.moves(), surface, edges_of(body, near));
   // The crack has been at those: the line between the old surface and the new one is on both.
   std::erase_if(edges, [&](const CrossedEdge& edge) { return behind.is_on(body.mesh().node(edge.above)); });
+  if (edges.empty()) return {};
   incision.edges_cut = static_cast<int>(edges.size());
-  if (edges.empty()) return incision;
 
   snapping.snap();
   // Where an edge is still crossed, the faces go round it: its ends count as the crack's.
@@ -97,6 +97,8 @@ Incision incise_splitting(const mesh::TornMesh& body, const Surroundings& surrou
   std::vector<NodeId> nodes;
   std::set_union(on.begin(), on.end(), off.begin(), off.end(), std::back_inserter(nodes));
   double_nodes(body, faces_between(body, Sides(body, joined, snapping), nodes), incision.edit);
+  // Short of the next nodes, or along a gap that is there already: what was snapped comes with what opens something.
+  if (incision.edit.copied.empty()) return {};
   incision.edit.moved = snapping.moves().moved();
   incision.edit.swept = surface.corners();
   incision.nodes_off_plane = static_cast<int>(off.size());

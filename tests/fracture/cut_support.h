@@ -45,12 +45,15 @@ struct CutBody {
   void apply(const mesh::MeshEdit& edit) {
     body.apply(edit);
     surroundings.follow(edit, body);
-    for (const NodeId parent : edit.copied)
+    for (const NodeId parent : edit.copied) {
+      settings.immovable.push_back(settings.immovable[parent.index()]);
       for (std::size_t axis = 0; axis < 3; ++axis) held.push_back(held[3 * parent.index() + axis]);
+    }
   }
   mesh::MeshEdit undo() {
     mesh::MeshEdit edit = body.undo();
     held.resize(3 * body.mesh().node_count());
+    settings.immovable.resize(body.mesh().node_count());
     return edit;
   }
   Incision incise(const CutSurface& surface) const { return fracture::incise(body, surroundings, surface, settings); }

@@ -113,6 +113,37 @@ TEST(CutAlong, GoesOnUntilAnEdgeIsCut) {
   EXPECT_NEAR(advance->step[0].norm(), advance->length, 1e-15);
 }
 
+// By splitting, an edge that is met opens nothing before a node is behind the front.
+TEST(CutAlong, GoesOnUntilSomethingOpens) {
+  for (const double x : {0.0601, 0.0655, 0.0702, 0.0755}) {
+    CutBody cut(plate(), IncisionMethod::split);
+    Crack crack = front_at(x, 0.1199, 0.01);
+    cut.cut(make_crack(Vec3(0.0, 0.1199, 0.0), Vec3(x, 0.1199, 0.0), Vec3::UnitZ(), cut.surroundings)->surface);
+    for (int step = 0; step < 20; ++step) {
+      auto advance = plan_advance(crack, std::vector{towards(Vec3::UnitX(), 0.002)}, cut.surroundings);
+      const Incision incision = cut_along(cut.body, cut.surroundings, crack, *advance, cut.settings);
+      if (incision.edit.empty()) break;
+      EXPECT_GT(incision.edges_cut, 0);
+      EXPECT_FALSE(incision.edit.copied.empty());
+      cut.apply(incision.edit);
+      crack = advanced(crack, *advance, cut.surroundings, cut.body).at(0);
+    }
+    EXPECT_TRUE(crack.finished || crack.front[0].position[0] > 0.2);
+    EXPECT_EQ(find_pieces(cut.body, cut.held).count(), 2U);
+  }
+}
+
+// A crack that runs into the gap of another one and along it has nothing to open: no advance, no area.
+TEST(CutAlong, OpensNothingInTheGapOfAnotherCrack) {
+  CutBody cut(plate(), IncisionMethod::split);
+  cut.cut(make_crack(Vec3(0.0, 0.12, 0.0), Vec3(0.2, 0.12, 0.0), Vec3::UnitZ(), cut.surroundings)->surface);
+  const Crack crack = front_at(0.03, 0.12, 0.01);
+  for (const double length : {0.002, 0.03, 0.094}) {
+    auto advance = plan_advance(crack, std::vector{towards(Vec3::UnitX(), length)}, cut.surroundings);
+    EXPECT_TRUE(cut_along(cut.body, cut.surroundings, crack, *advance, cut.settings).edit.empty()) << length;
+  }
+}
+
 TEST(CutAlong, EndsWhereTheBodyEnds) {
   CutBody cut(plate());
   const Crack crack = front_at(0.2395, 0.1199, 0.01);
@@ -205,7 +236,10 @@ TEST(Advanced, FrontsOfABarStayRegularAndOnItsSurface) {
       if (!advance) continue;
       const double before = crack.area;
       cracks = advanced(crack, *advance, bar, body);
-      EXPECT_GT(cracks[0].area, before);
+      if (cracks[0].finished)
+        EXPECT_GE(cracks[0].area, before);  // what it left the body by may lie outside
+      else
+        EXPECT_GT(cracks[0].area, before);
       EXPECT_LT(cracks[0].area, 0.05);
     }
     for (const Crack& crack : cracks) {

@@ -95,6 +95,42 @@ TEST(Split, SupportedNodesStayAndTheBodyIsCutAllTheSame) {
   }
 }
 
+// The hand may hold one flank: that stays, and the other is as free as before.
+TEST(Split, AHeldCopyStaysAndItsOriginalMayMove) {
+  CutBody cut(cubes({6, 3, 2}), IncisionMethod::split);
+  cut.cut(across_x(3.0, -0.5, 3.5, -0.5, 2.5));
+  for (std::size_t copy = cut.body.intact_node_count(); copy < cut.body.mesh().node_count(); ++copy)
+    cut.settings.immovable[copy] = cut.body.mesh().nodes[copy][1] == 1.0;
+  const Incision incision =
+      cut.incise(strip({{-0.5, 1.3, -0.5}, {-0.5, 1.3, 2.5}}, {{6.5, 1.3, -0.5}, {6.5, 1.3, 2.5}}));
+  int originals = 0;
+  int copies = 0;  // the further ends of the edges that the held ones have
+  for (const mesh::MovedNode& move : incision.edit.moved) {
+    ASSERT_EQ(cut.settings.immovable[move.node.index()], 0);
+    if (move.from[0] != 3.0) continue;
+    const bool is_copy = move.node.index() >= cut.body.intact_node_count();
+    EXPECT_EQ(move.from[1], is_copy ? 2.0 : 1.0);
+    ++(is_copy ? copies : originals);
+  }
+  EXPECT_EQ(originals, 3);
+  EXPECT_EQ(copies, 3);
+}
+
+// Nothing is cut twice: not along its own gap, nor by a crack that comes from elsewhere and runs along it.
+TEST(Split, WhatOpensNothingIsEmpty) {
+  CutBody cut(cubes({6, 4, 2}), IncisionMethod::split);
+  // One edge is met, no face of it comes free of the front: nothing has moved either.
+  const CutSurface corner = across_x(2.3, -0.5, 0.6, -0.5, 0.4);
+  EXPECT_TRUE(cut.incise(corner).edit.empty());
+  EXPECT_EQ(cut.incise(corner).edges_cut, 0);
+
+  cut.cut(across_x(3.0, -0.5, 4.5, -0.5, 2.5));
+  const std::uint64_t before = fingerprint(cut.body);
+  const CutSurface along = strip({{3.0, 1.0, -0.5}, {3.0, 4.5, -0.5}}, {{3.0, 1.0, 2.5}, {3.0, 4.5, 2.5}});
+  EXPECT_TRUE(cut.incise(along).edit.empty());
+  EXPECT_EQ(fingerprint(cut.body), before);
+}
+
 TEST(Split, WhatMeetsNoEdgeIsEmpty) {
   const CutBody cut(cubes({6, 3, 2}), IncisionMethod::split);
   for (const CutSurface& surface : {across_x(2.4, 3.2, 4.0, -0.5, 2.5), across_x(7.0, -0.5, 3.5, -0.5, 2.5),
