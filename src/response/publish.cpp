@@ -12,8 +12,8 @@ ForceSnapshot make_snapshot(const ContactLaw& law, double force_limit, std::uint
   }
   out.force_limit = force_limit;
   out.topology = topology;
-  out.flags = ForceSnapshot::kHeld;
-  if (law.mode == ContactMode::push) out.flags |= ForceSnapshot::kPush;
+  out.flags = ForceSnapshot::is_held;
+  if (law.mode == ContactMode::push) out.flags |= ForceSnapshot::pushes_only;
   return out;
 }
 

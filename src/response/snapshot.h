@@ -14,10 +14,10 @@ namespace rhexis::response {
 
 struct ForceSnapshot {
   enum Flag : std::uint32_t {
-    kHeld = 1,       ///< a point is held: without it the force is zero
-    kPush = 2,       ///< only against the outward normal
-    kOutOfDate = 4,  ///< the body has torn since, and the next one is not ready
-    kTornOff = 8,    ///< the point that was held is on a piece without support, or gone
+    is_held = 1,      ///< a point is held: without it the force is zero
+    pushes_only = 2,  ///< only against the outward normal
+    out_of_date = 4,  ///< the body has torn since, and the next one is not ready
+    torn_off = 8,     ///< the point that was held is on a piece without support, or gone
   };
 
   std::array<double, 9> stiffness{};  ///< N/m, by rows: force on the body for a displacement beyond `rest`

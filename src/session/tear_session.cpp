@@ -13,7 +13,7 @@ constexpr double kLocalRadius = 4.0;
 
 }  // namespace
 
-TearSession::TearSession(mesh::TetMesh mesh, TearSettings settings)
+TearSession::TearSession(const mesh::TetMesh& mesh, TearSettings settings)
     : settings_(std::move(settings)), body_(mesh), surroundings_(mesh), hand_(settings_.contact) {
   smallest_radius_ratio_ = mesh::measure_quality(mesh).radius_ratio.min;
   if (settings_.local_radius <= 0.0) settings_.local_radius = kLocalRadius * mean_edge();
@@ -33,9 +33,9 @@ TearSession::TearSession(mesh::TetMesh mesh, TearSettings settings)
   }
 }
 
-Expected<std::unique_ptr<TearSession>> TearSession::make(mesh::TetMesh mesh, TearSettings settings,
+Expected<std::unique_ptr<TearSession>> TearSession::make(const mesh::TetMesh& mesh, TearSettings settings,
                                                          const std::vector<CrackLine>& cracks) {
-  std::unique_ptr<TearSession> session(new TearSession(std::move(mesh), std::move(settings)));
+  std::unique_ptr<TearSession> session(new TearSession(mesh, std::move(settings)));
   const TearSettings& all = session->settings_;
   // Where energy decides whether, any positive strength serves to ask for the direction.
   Expected<std::unique_ptr<fracture::Criterion>> criterion =

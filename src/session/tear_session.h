@@ -41,7 +41,7 @@ class TearSession {
 
   /// The body under its loads, with its first cracks cut. Errors say what is wrong in the user's words, with the place
   /// of the crack that they are about: a crack that misses the body, a body that its cracks leave unstable.
-  static Expected<std::unique_ptr<TearSession>> make(mesh::TetMesh mesh, TearSettings settings,
+  static Expected<std::unique_ptr<TearSession>> make(const mesh::TetMesh& mesh, TearSettings settings,
                                                      const std::vector<CrackLine>& cracks);
 
   /// Takes hold of the surface point nearest to `at` (m, reference). Errors: as Hand::grasp.
@@ -72,7 +72,7 @@ class TearSession {
   void displacement(VectorX& u);
 
  private:
-  TearSession(mesh::TetMesh mesh, TearSettings settings);
+  TearSession(const mesh::TetMesh& mesh, TearSettings settings);
 
   struct Judged {
     fracture::Advance advance;

@@ -32,7 +32,7 @@ struct CrackLine {
   Vec3 to = Vec3::Zero();    ///< m
   Vec3 through = Vec3::UnitZ();
   std::string file = {};  ///< where it was said, for errors; empty: nowhere
-  int line = 0;      ///< 0: not in a line
+  int line = 0;           ///< 0: not in a line
 };
 
 }  // namespace rhexis::session

@@ -105,7 +105,7 @@ TEST(ForceSnapshot, IsZeroWithoutAHoldAndForWhatIsNotANumber) {
   EXPECT_GT(force_at(snapshot, hand).force.norm(), 0.0);
   EXPECT_TRUE(force_at(snapshot, Vec3(0.0, std::numeric_limits<double>::quiet_NaN(), 0.0)).force.isZero(0.0));
   EXPECT_TRUE(force_at(snapshot, Vec3(0.0, 0.0, std::numeric_limits<double>::infinity())).force.isZero(0.0));
-  snapshot.flags &= ~static_cast<std::uint32_t>(ForceSnapshot::kHeld);
+  snapshot.flags &= ~static_cast<std::uint32_t>(ForceSnapshot::is_held);
   EXPECT_TRUE(force_at(snapshot, hand).force.isZero(0.0));
   EXPECT_TRUE(force_at(ForceSnapshot{}, hand).force.isZero(0.0));
 }
