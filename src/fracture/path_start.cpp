@@ -16,6 +16,9 @@ constexpr double kWellInside = 0.25;
 constexpr double kFirstDepth = 1.0;
 constexpr double kFirstRadius = 1.5;
 constexpr int kHalfDiscPoints = 7;
+/// Sizes that are tried, in these, as far as kLargestFirst.
+constexpr double kFirstGrowth = 0.5;
+constexpr double kLargestFirst = 4.0;
 /// Lengths below this part of the body's size, and sines below it, are none.
 constexpr double kNothing = 1e-9;
 
@@ -70,8 +73,8 @@ CutSurface plane_through(const Vec3& through, const Vec3& direction, double leng
 }
 
 /// Half a disc about a point of the surface, in the plane of normal `normal`, growing along `inward`.
-InitialCrack half_disc(const Vec3& centre, const Vec3& normal, const Vec3& inward, const Surroundings& surroundings) {
-  const double radius = kFirstRadius * surroundings.mean_edge();
+InitialCrack half_disc(const Vec3& centre, const Vec3& normal, const Vec3& inward, double radius,
+                       const Surroundings& surroundings) {
   const double margin = kCutMargin * surroundings.mean_edge();
   const Vec3 along = inward.cross(normal);  // tangent x direction = normal in the middle
   InitialCrack out;
@@ -159,7 +162,7 @@ Expected<InitialCrack> make_crack(const Vec3& from, const Vec3& to, const Vec3& 
 }
 
 std::optional<InitialCrack> start_crack(const mesh::TornMesh& body, std::span<const TetStress> tets, double strength,
-                                        const Surroundings& surroundings) {
+                                        const Surroundings& surroundings, double larger) {
   const TetStress* worst = nullptr;
   PrincipalStress decisive;
   std::vector<Outside> faces;
@@ -189,7 +192,7 @@ std::optional<InitialCrack> start_crack(const mesh::TornMesh& body, std::span<co
       start = &face;
     }
   }
-  const double edge = surroundings.mean_edge();
+  const double edge = larger * surroundings.mean_edge();
   if (surroundings.is_plate()) {
     if (normal.norm() < kNothing) return std::nullopt;  // tension through the thickness: no line along z follows
     normal.normalize();
@@ -206,8 +209,19 @@ std::optional<InitialCrack> start_crack(const mesh::TornMesh& body, std::span<co
   if (start == nullptr) return std::nullopt;
   normal.normalize();
   const Vec3 inward = (-start->normal + start->normal.dot(normal) * normal).normalized();
-  InitialCrack out = half_disc(start->centre, normal, inward, surroundings);
+  InitialCrack out = half_disc(start->centre, normal, inward, kFirstRadius * edge, surroundings);
   return out.cracks.empty() ? std::nullopt : std::optional(out);
+}
+
+std::optional<FirstCut> cut_first(const mesh::TornMesh& body, std::span<const TetStress> tets, double strength,
+                                  const Surroundings& surroundings, const IncisionSettings& settings) {
+  for (double larger = 1.0; larger <= kLargestFirst; larger += kFirstGrowth) {
+    const std::optional<InitialCrack> start = start_crack(body, tets, strength, surroundings, larger);
+    if (!start) continue;  // too small for a front, perhaps
+    Incision incision = incise(body, surroundings, start->surface, settings);
+    if (!incision.edit.empty()) return FirstCut{*start, std::move(incision)};
+  }
+  return std::nullopt;
 }
 
 }  // namespace rhexis::fracture

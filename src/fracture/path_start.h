@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "fracture/crack.h"
 #include "fracture/front_surroundings.h"
+#include "fracture/incision.h"
 #include "fracture/tet_stress.h"
 
 namespace rhexis::fracture {
@@ -30,9 +31,21 @@ struct InitialCrack {
 /// Where a body without a crack tears first: at the tet with a surface face whose largest principal stress is largest,
 /// when that reaches `strength` (Pa). The plane is normal to that stress and the crack runs inward: a plate is cut
 /// through by one mean edge from its rim (a slit of two tips where it is not at the rim), any other body gets half a
-/// disc of one and a half mean edges' radius. `tets` at the hand do not count. Empty when the strength is not reached,
-/// or where the cut would meet nothing.
+/// disc of one and a half mean edges' radius; both times `larger`. `tets` at the hand do not count. Empty when the
+/// strength is not reached, or where the cut would meet nothing.
 [[nodiscard]] std::optional<InitialCrack> start_crack(const mesh::TornMesh& body, std::span<const TetStress> tets,
-                                                      double strength, const Surroundings& surroundings);
+                                                      double strength, const Surroundings& surroundings,
+                                                      double larger = 1.0);
+
+struct FirstCut {
+  InitialCrack start;
+  Incision incision;  ///< opens something
+};
+/// start_crack and its incision: at its size or, where that opens nothing, at the least of up to four times it that
+/// does. By splitting, a cut of one edge often does not free a single face. Empty as start_crack, or when none opens
+/// anything.
+[[nodiscard]] std::optional<FirstCut> cut_first(const mesh::TornMesh& body, std::span<const TetStress> tets,
+                                                double strength, const Surroundings& surroundings,
+                                                const IncisionSettings& settings);
 
 }  // namespace rhexis::fracture

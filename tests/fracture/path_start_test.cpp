@@ -8,6 +8,7 @@
 #include "tests/fracture/cracked_plate.h"
 #include "tests/fracture/cut_support.h"
 #include "tests/fracture/stress_fields.h"
+#include "tests/support/measured.h"
 
 namespace rhexis::fracture::test {
 namespace {
@@ -176,6 +177,44 @@ TEST(StartCrack, IsHalfADiscInABar) {
   for (const auto& [a, b, c] : start->surface.triangles)
     EXPECT_GE((b - a).cross(c - a).dot(crack.front[0].normal()), -1e-20);
   EXPECT_GT(cut.cut(start->surface).edges_cut, 0);
+}
+
+// Wherever a body would tear, and whichever way, its first crack opens something; no larger than it has to be.
+TEST(CutFirst, OpensSomethingByBothMethods) {
+  for (const IncisionMethod method : {IncisionMethod::keep_nodes, IncisionMethod::split}) {
+    for (const mesh::TetMesh& mesh : {plate(), bar(), tube()}) {
+      const CutBody cut(mesh, method);
+      const auto boundary = mesh::find_faces(mesh).boundary;
+      Dice dice(5);
+      int none = 0;
+      int larger = 0;
+      for (int trial = 0; trial < 30; ++trial) {
+        const auto face = static_cast<std::size_t>(dice.between(0.0, static_cast<double>(boundary.size())));
+        const std::array<Vec3, 4> x = mesh::corners(mesh, boundary[face].tet);
+        const Vec3 pulled = dice.direction();
+        TetStress stress;
+        stress.tet = boundary[face].tet;
+        stress.centroid = 0.25 * (x[0] + x[1] + x[2] + x[3]);
+        stress.stress = 2.0 * pulled * pulled.transpose();
+        const auto first = cut_first(cut.body, std::span(&stress, 1), 1.0, cut.surroundings, cut.settings);
+        EXPECT_FALSE(cut_first(cut.body, std::span(&stress, 1), 3.0, cut.surroundings, cut.settings));
+        if (!first) {
+          ++none;
+          continue;
+        }
+        EXPECT_FALSE(first->incision.edit.empty());
+        EXPECT_FALSE(first->start.cracks.empty());
+        const auto usual = start_crack(cut.body, std::span(&stress, 1), 1.0, cut.surroundings);
+        if (!usual || cut.incise(usual->surface).edit.empty()) {
+          ++larger;
+        } else {
+          EXPECT_EQ(first->start.surface.triangles[0].c, usual->surface.triangles[0].c);
+        }
+      }
+      rhexis::test::measured("first cracks: {} of 30 larger, {} none", larger, none);
+      EXPECT_LE(none, 3);  // a pull straight away from the surface, a corner that one side of the disc misses
+    }
+  }
 }
 
 /// Pulls a body apart from its first crack on, by the sections' own judgement; the number of advances, or -1.
