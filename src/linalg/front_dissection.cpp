@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "linalg/metis_turn.h"
 #include "linalg/ordering.h"
 
 namespace rhexis::linalg {
@@ -149,6 +150,7 @@ class Cutter {
     graph.sorted = graph.packed = 1;
     std::vector<int> edge_weight(index.size(), 1);
     std::vector<int> side(vertices.size());
+    const auto turn = take_metis_turn();
     const auto size = cholmod_metis_bisector(&graph, weight.data(), edge_weight.data(), side.data(), &common_);
     RHEXIS_CHECK(size >= 0, "CHOLMOD cannot dissect {} nodes: status {}", vertices.size(), common_.status);
     for (std::size_t i = 0; i < vertices.size(); ++i) part[static_cast<std::size_t>(side[i])].push_back(vertices[i]);

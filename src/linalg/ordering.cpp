@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "base/check.h"
+#include "linalg/metis_turn.h"
 
 namespace rhexis::linalg {
 namespace {
@@ -87,6 +88,7 @@ std::vector<std::int32_t> find_order(const UnknownGraph& graph, Ordering how) {
   cholmod_start(&common);
   common.print = 0;
   std::vector<std::int32_t> vertices(rows.nrow);
+  const auto turn = how == Ordering::metis ? take_metis_turn() : std::unique_lock<std::mutex>();
   const int done = how == Ordering::metis ? cholmod_metis(&rows, nullptr, 0, 1, vertices.data(), &common)
                                           : cholmod_amd(&rows, nullptr, 0, vertices.data(), &common);
   cholmod_finish(&common);

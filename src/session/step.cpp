@@ -111,22 +111,20 @@ bool TearSession::start_crack(TickReport& report, const Observer& observer) {
   const Stopwatch watch;
   VectorX u;
   displacement(u);
-  std::optional<fracture::InitialCrack> start =
-      fracture::start_crack(body_, surface_stresses(u), *settings_.strength, surroundings_);
-  if (!start) return false;
-  std::optional<Change> change = beginning(std::move(*start));
-  if (!change) return false;
-  change->seconds = watch.seconds();
-  return take(std::move(*change), report, observer);
+  std::optional<fracture::FirstCut> first =
+      fracture::cut_first(body_, surface_stresses(u), *settings_.strength, surroundings_, incision_settings());
+  if (!first) return false;
+  Change change = beginning(std::move(first->start.cracks), std::move(first->incision));
+  change.seconds = watch.seconds();
+  return take(std::move(change), report, observer);
 }
 
-std::optional<TearSession::Change> TearSession::beginning(fracture::InitialCrack start) const {
+TearSession::Change TearSession::beginning(std::vector<fracture::Crack> cracks, fracture::Incision incision) const {
   Change change;
-  change.incision = fracture::incise(body_, surroundings_, start.surface, incision_settings());
-  if (change.incision.edit.empty()) return std::nullopt;
+  change.incision = std::move(incision);
   change.record.started = true;
   change.crack = cracks_.size();
-  change.next_cracks = [this, begun = std::move(start.cracks)] {
+  change.next_cracks = [this, begun = std::move(cracks)] {
     std::vector<fracture::Crack> next = cracks_;
     next.insert(next.end(), begun.begin(), begun.end());
     return next;

@@ -63,10 +63,10 @@ Expected<std::unique_ptr<TearSession>> TearSession::make(const mesh::TetMesh& me
 Expected<void> TearSession::open(const CrackLine& line) {
   Expected<fracture::InitialCrack> start = fracture::make_crack(line.from, line.to, line.through, surroundings_);
   if (!start) return fail(std::move(start.error()));
-  std::optional<Change> change = beginning(std::move(*start));
-  if (!change) return fail("the crack cuts no edge of the mesh", "a longer crack, or a finer mesh");
+  fracture::Incision incision = fracture::incise(body_, surroundings_, start->surface, incision_settings());
+  if (incision.edit.empty()) return fail("the crack opens nothing in the mesh", "a longer crack, or a finer mesh");
   TickReport report;
-  take(std::move(*change), report, {});
+  take(beginning(std::move(start->cracks), std::move(incision)), report, {});
   return {};
 }
 

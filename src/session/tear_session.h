@@ -90,8 +90,8 @@ class TearSession {
   [[nodiscard]] std::optional<Judged> judge(std::size_t crack) const;
   bool run_on(std::size_t crack, Judged judged, TickReport& report, const Observer& observer);
   bool start_crack(TickReport& report, const Observer& observer);
-  /// Of a crack that begins; empty when it would cut nothing.
-  [[nodiscard]] std::optional<Change> beginning(fracture::InitialCrack start) const;
+  /// Of cracks that begin.
+  [[nodiscard]] Change beginning(std::vector<fracture::Crack> cracks, fracture::Incision incision) const;
   bool take(Change change, TickReport& report, const Observer& observer);
 
   Expected<void> open(const CrackLine& line);

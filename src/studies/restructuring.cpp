@@ -52,8 +52,8 @@ Expected<ordered_json> run_restructuring(const RestructuringOptions& options, co
   for (const int nodes : options.nodes)  // before minutes have been spent on the others
     if (const Expected<StudyPlate> plate = make_study_plate(nodes); !plate) return fail(plate.error());
 
-  if (!(options.seconds_per_case > 0.0) || !std::isfinite(options.seconds_per_case))
-    return fail(fmt::format("{} seconds a plate", options.seconds_per_case), "a positive number");
+  if (!(options.seconds_per_case >= 0.0) || !std::isfinite(options.seconds_per_case))
+    return fail(fmt::format("{} seconds a plate", options.seconds_per_case), "0 or more");
   const bool dense_alone = options.ways.size() == 1 && options.ways.front() == kWays.front();
   if (dense_alone && *std::min_element(options.nodes.begin(), options.nodes.end()) > kDenseNodes)
     return fail("'dense-inverse' holds the whole inverse, and none of the plates is small enough",

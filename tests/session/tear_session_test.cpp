@@ -241,8 +241,11 @@ TEST(TearSession, GoesOnUntilTheBodyIsInPiecesAndTheHandLetsGo) {
   EXPECT_LT(u.norm(), 1e-12);  // what is left is held, and nothing pulls at it
 }
 
-TEST(TearSession, ABodyWithoutACrackTearsWhereItYields) {
+class EveryIncision : public testing::TestWithParam<fracture::IncisionMethod> {};
+
+TEST_P(EveryIncision, TearsABodyWithoutACrackWhereItYields) {
   PlateCase plate;
+  plate.settings.incision = GetParam();
   plate.cracks.clear();
   plate.settings.strength = 0.05e6;
   plate.settings.advance_threshold = 0.03e6;
@@ -253,6 +256,12 @@ TEST(TearSession, ABodyWithoutACrackTearsWhereItYields) {
   EXPECT_TRUE(tear->advances().front().started);
   EXPECT_FALSE(tear->cracks().empty());
 }
+
+INSTANTIATE_TEST_SUITE_P(Both, EveryIncision,
+                         testing::Values(fracture::IncisionMethod::keep_nodes, fracture::IncisionMethod::split),
+                         [](const auto& test) {
+                           return test.param == fracture::IncisionMethod::split ? "split" : "keep_nodes";
+                         });
 
 TEST(TearSession, ToughnessTearsWhereTheEnergyReleaseReachesIt) {
   PlateCase plate;
