@@ -23,7 +23,9 @@ struct TearSettings {
   double local_radius = 0.0;  ///< m, first and least; 0: four mean edges
   fracture::IncisionMethod incision = fracture::IncisionMethod::keep_nodes;
   response::ContactRule contact = response::ContactRule::consistent;
-  bool background = true;  ///< the response may prepare its next window on another thread; the result stays the same
+  /// The response may make a new factor on another thread when cracks leave the corridor that it foresaw. Worth it for
+  /// cracks that turn far (docs/restructuring.md); the same bits from run to run, other ones than without.
+  bool background = false;
 };
 
 /// A straight crack to start with: it opens all of the body that lies along `through`.
