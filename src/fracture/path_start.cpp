@@ -107,15 +107,9 @@ struct Outside {
 std::vector<Outside> outside_of(const mesh::TornMesh& body, TetId tet) {
   std::vector<Outside> out;
   for (std::int8_t vertex = 0; vertex < 4; ++vertex) {
-    const std::array<NodeId, 3> nodes = mesh::face_nodes(body.mesh(), {tet, vertex});
-    const auto around = body.tets_around(nodes[0]);
-    const bool shared = std::any_of(around.begin(), around.end(), [&](TetId other) {
-      if (other == tet || !body.is_solved(other)) return false;
-      const mesh::Tet& corners = body.mesh().tet(other);
-      return std::all_of(nodes.begin(), nodes.end(),
-                         [&](NodeId node) { return std::find(corners.begin(), corners.end(), node) != corners.end(); });
-    });
-    if (shared) continue;
+    const mesh::TetFace side{tet, vertex};
+    if (!mesh::is_on_solved_surface(body, side)) continue;
+    const std::array<NodeId, 3> nodes = mesh::face_nodes(body.mesh(), side);
     const Vec3& a = body.mesh().node(nodes[0]);
     const Vec3& b = body.mesh().node(nodes[1]);
     const Vec3& c = body.mesh().node(nodes[2]);

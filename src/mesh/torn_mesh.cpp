@@ -93,21 +93,23 @@ MeshEdit TornMesh::undo() {
   return edit;
 }
 
+bool is_on_solved_surface(const TornMesh& body, TetFace face) {
+  const std::array<NodeId, 3> corner = face_nodes(body.mesh(), face);
+  const auto around = body.tets_around(corner[0]);
+  return std::none_of(around.begin(), around.end(), [&](TetId other) {
+    if (other == face.tet || !body.is_solved(other)) return false;
+    const Tet& nodes = body.mesh().tet(other);
+    return std::find(nodes.begin(), nodes.end(), corner[1]) != nodes.end() &&
+           std::find(nodes.begin(), nodes.end(), corner[2]) != nodes.end();
+  });
+}
+
 std::vector<TetFace> solved_surface(const TornMesh& body) {
   std::vector<TetFace> out;
   for (std::size_t t = 0; t < body.mesh().tet_count(); ++t) {
-    const TetId tet(t);
-    if (!body.is_solved(tet)) continue;
+    if (!body.is_solved(TetId(t))) continue;
     for (std::int8_t vertex = 0; vertex < 4; ++vertex) {
-      const auto [a, b, c] = face_nodes(body.mesh(), {tet, vertex});
-      const auto around = body.tets_around(a);
-      const bool shared = std::any_of(around.begin(), around.end(), [&](TetId other) {
-        if (other == tet || !body.is_solved(other)) return false;
-        const Tet& nodes = body.mesh().tet(other);
-        return std::find(nodes.begin(), nodes.end(), b) != nodes.end() &&
-               std::find(nodes.begin(), nodes.end(), c) != nodes.end();
-      });
-      if (!shared) out.push_back({tet, vertex});
+      if (is_on_solved_surface(body, {TetId(t), vertex})) out.push_back({TetId(t), vertex});
     }
   }
   return out;

@@ -54,7 +54,9 @@ class TornMesh {
   std::vector<MeshEdit> history_;
 };
 
-/// Faces of the tets in the solve that no other such tet shares; ordered. O(n).
+/// No other tet in the solve shares this face of one that is.
+[[nodiscard]] bool is_on_solved_surface(const TornMesh& body, TetFace face);
+/// All such faces; ordered. O(n).
 [[nodiscard]] std::vector<TetFace> solved_surface(const TornMesh& body);
 
 }  // namespace rhexis::mesh

@@ -45,19 +45,6 @@ Vec3 nearest_in_triangle(const std::array<Vec3, 3>& corner, const Vec3& at) {
   return best;
 }
 
-/// No other tet of the solve has the face.
-bool is_on_surface(const TornMesh& body, TetFace face) {
-  const auto nodes = mesh::face_nodes(body.mesh(), face);
-  const auto has = [&](TetId tet, NodeId node) {
-    const mesh::Tet& corners = body.mesh().tet(tet);
-    return std::find(corners.begin(), corners.end(), node) != corners.end();
-  };
-  const auto around = body.tets_around(nodes[0]);
-  return std::none_of(around.begin(), around.end(), [&](TetId tet) {
-    return tet != face.tet && body.is_solved(tet) && has(tet, nodes[1]) && has(tet, nodes[2]);
-  });
-}
-
 std::array<Vec3, 3> corners_of(const TornMesh& body, TetFace face) {
   const auto nodes = mesh::face_nodes(body.mesh(), face);
   return {body.mesh().node(nodes[0]), body.mesh().node(nodes[1]), body.mesh().node(nodes[2])};
@@ -86,7 +73,7 @@ Nearest find_nearest(const TornMesh& body, const Vec3& at) {
       const Vec3 weight = nearest_in_triangle(corner, at);
       const Vec3 foot = weight[0] * corner[0] + weight[1] * corner[1] + weight[2] * corner[2];
       const double squared = (foot - at).squaredNorm();
-      if (squared < best.squared_distance && is_on_surface(body, face)) best = {face, weight, squared};
+      if (squared < best.squared_distance && mesh::is_on_solved_surface(body, face)) best = {face, weight, squared};
     }
   }
   return best;
@@ -106,7 +93,7 @@ Vec3 outward_normal(const TornMesh& body, const SurfacePoint& point) {
       };
       bool has_all = true;
       for (int k = 0; k < point.count; ++k) has_all = has_all && place(point.node[static_cast<std::size_t>(k)]) < 3;
-      if (!has_all || !is_on_surface(body, face)) continue;
+      if (!has_all || !mesh::is_on_solved_surface(body, face)) continue;
       const auto corner = corners_of(body, face);
       const std::size_t here = place(point.node[0]);
       const Vec3 one = corner[(here + 1) % 3] - corner[here];
