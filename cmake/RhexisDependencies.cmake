@@ -47,3 +47,23 @@ find_package(HDF5 REQUIRED COMPONENTS C)
 add_library(rhexis_hdf5 INTERFACE)
 target_include_directories(rhexis_hdf5 SYSTEM INTERFACE ${HDF5_C_INCLUDE_DIRS})
 target_link_libraries(rhexis_hdf5 INTERFACE ${HDF5_C_LIBRARIES})
+
+# The wire: C++ from the one schema; the page makes its TypeScript from the same file.
+find_program(RHEXIS_FLATC flatc REQUIRED)
+find_path(RHEXIS_FLATBUFFERS_DIR flatbuffers/flatbuffers.h REQUIRED)
+set(RHEXIS_WIRE_DIR ${CMAKE_BINARY_DIR}/generated)
+set(RHEXIS_SCHEMA ${CMAKE_SOURCE_DIR}/schema/rhexis.fbs)
+add_custom_command(
+  OUTPUT ${RHEXIS_WIRE_DIR}/wire/rhexis_generated.h
+  COMMAND ${RHEXIS_FLATC} --cpp --gen-object-api --scoped-enums -o ${RHEXIS_WIRE_DIR}/wire ${RHEXIS_SCHEMA}
+  DEPENDS ${RHEXIS_SCHEMA})
+add_custom_target(rhexis_wire_header DEPENDS ${RHEXIS_WIRE_DIR}/wire/rhexis_generated.h)
+add_library(rhexis_wire_schema INTERFACE)
+add_dependencies(rhexis_wire_schema rhexis_wire_header)
+target_include_directories(rhexis_wire_schema SYSTEM INTERFACE ${RHEXIS_WIRE_DIR} ${RHEXIS_FLATBUFFERS_DIR})
+
+# HTTP and WebSocket: Boost.Beast and Asio, headers alone. 1.74's Asio does not compile as C++20 with gcc 12.
+find_package(Boost 1.81 REQUIRED)
+add_library(rhexis_beast INTERFACE)
+target_include_directories(rhexis_beast SYSTEM INTERFACE ${Boost_INCLUDE_DIRS})
+target_link_libraries(rhexis_beast INTERFACE Threads::Threads)

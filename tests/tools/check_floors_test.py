@@ -103,6 +103,11 @@ class CheckFloors(unittest.TestCase):
     def test_header_that_is_not_named_from_src(self):
         self.assert_one(self.problems({"src/mesh/tet_mesh.cpp": '#include "tet_mesh.h"\n'}), "name headers from src/")
 
+    def test_generated_header_counts_for_its_room(self):
+        generated = '#include "mesh/wire_generated.h"\n'
+        self.assertEqual(self.problems({"src/mesh/tet_mesh.cpp": generated}), [])
+        self.assert_one(self.problems({"src/base/vec.h": generated}), "climbs", "mesh")
+
     def test_file_outside_every_room(self):
         self.assert_one(self.problems({"src/utils/all.h": ""}), "src/utils/all.h", "in no room")
 

@@ -1,0 +1,1 @@
+#include "haptics/device.h"
