@@ -1,47 +1,27 @@
 #include "element/tet_kernels.h"
 
-#include <cstdlib>
-
-#include "base/log.h"
+#include "base/instruction_set.h"
 
 namespace rhexis::element {
 
 const TetKernels* find_tet_kernels(std::string_view name) {
-  if (name == "portable") {
-    static const TetKernels kernels = portable::make_tet_kernels();
-    return &kernels;
-  }
+  if (!runs_instruction_set(name)) return nullptr;
 #if defined(__x86_64__)
-  if (name == "avx2" && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+  if (name == "avx2") {
     static const TetKernels kernels = avx2::make_tet_kernels();
     return &kernels;
   }
-  if (name == "avx512" && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512vl")) {
+  if (name == "avx512") {
     static const TetKernels kernels = avx512::make_tet_kernels();
     return &kernels;
   }
 #endif
-  return nullptr;
+  static const TetKernels kernels = portable::make_tet_kernels();
+  return &kernels;
 }
-
-namespace {
-
-const TetKernels& choose() {
-  if (const char* wanted = std::getenv("RHEXIS_SIMD"); wanted != nullptr && *wanted != '\0') {
-    if (const TetKernels* kernels = find_tet_kernels(wanted)) return *kernels;
-    spdlog::warn("RHEXIS_SIMD={}: not on this processor (portable, avx2 or avx512)", wanted);
-  }
-  for (const char* name : {"avx512", "avx2"}) {
-    if (const TetKernels* kernels = find_tet_kernels(name)) return *kernels;
-  }
-  return *find_tet_kernels("portable");
-}
-
-}  // namespace
 
 const TetKernels& tet_kernels() {
-  static const TetKernels& chosen = choose();
+  static const TetKernels& chosen = *find_tet_kernels(instruction_set());
   return chosen;
 }
 

@@ -1,4 +1,4 @@
-// Code for AVX must never reach a processor without it: choosing, and what the linker could merge.
+// Code for AVX must never reach a processor without it: what the linker could merge.
 
 #include <gtest/gtest.h>
 
@@ -7,26 +7,23 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 
+#include "base/instruction_set.h"
 #include "element/tet_kernels.h"
 
 namespace rhexis::test {
 namespace {
 
-TEST(InstructionSet, PortableIsAlwaysThereAndNonsenseIsNot) {
-  ASSERT_NE(element::find_tet_kernels("portable"), nullptr);
-  EXPECT_EQ(element::find_tet_kernels("portable")->instruction_set, "portable");
-  EXPECT_EQ(element::find_tet_kernels("mmx"), nullptr);
-  EXPECT_EQ(element::find_tet_kernels(""), nullptr);
-}
-
-TEST(InstructionSet, TheChosenOneIsTheFastestOrTheOneAskedFor) {
-  const char* asked = std::getenv("RHEXIS_SIMD");
-  const element::TetKernels* expected = asked != nullptr ? element::find_tet_kernels(asked) : nullptr;
-  for (const char* name : {"avx512", "avx2", "portable"}) {
-    if (expected == nullptr) expected = element::find_tet_kernels(name);
+TEST(InstructionSet, EachHasItsKernelsAndTheChosenOneIsInForce) {
+  for (const std::string_view name : kInstructionSets) {
+    const element::TetKernels* const kernels = element::find_tet_kernels(name);
+    ASSERT_EQ(kernels != nullptr, runs_instruction_set(name)) << name;
+    if (kernels == nullptr) continue;
+    EXPECT_EQ(kernels->instruction_set, name);
   }
-  EXPECT_EQ(&element::tet_kernels(), expected);
+  EXPECT_EQ(element::find_tet_kernels("mmx"), nullptr);
+  EXPECT_EQ(element::tet_kernels().instruction_set, instruction_set());
 }
 
 /// A weak or global function of these objects could be the copy that the linker keeps for everyone.
