@@ -93,7 +93,7 @@ Expected<Scene> settings_of(const Values& values, const std::string& file) {
   for (const Expected<void>& part : read)
     if (!part) return fail(part.error());
   if (values.one("fracture").given) {
-    Expected<FractureSettings> fracture = read_fracture_section(values.one("fracture"));
+    Expected<FractureSettings> fracture = read_fracture_section(values.one("fracture"), scene);
     if (!fracture) return fail(std::move(fracture.error()));
     scene.fracture = std::move(*fracture);
   }

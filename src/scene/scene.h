@@ -100,7 +100,7 @@ struct FractureSettings {
   std::optional<std::string> criterion;     ///< empty: by the body
   std::optional<double> strength;           ///< Pa; this or toughness
   std::optional<double> toughness;          ///< N/m
-  std::optional<double> advance_threshold;  ///< Pa; half of strength when that is given
+  std::optional<double> advance_threshold;  ///< Pa; half of strength when that is given, not read with a toughness
   bool ahead_only = true;
   std::optional<double> local_radius;  ///< m; empty: four mean edge lengths
   std::string incision;                ///< "keep-nodes", "split"

@@ -137,7 +137,7 @@ Expected<SupportSettings> read_support(const SectionValues& values) {
   return support;
 }
 
-Expected<FractureSettings> read_fracture_section(const SectionValues& values) {
+Expected<FractureSettings> read_fracture_section(const SectionValues& values, Scene& scene) {
   FractureSettings fracture;
   if (const Setting* criterion = values.find("criterion")) fracture.criterion = std::get<std::string>(criterion->value);
   fracture.strength = optional_number(values, "strength");
@@ -147,6 +147,7 @@ Expected<FractureSettings> read_fracture_section(const SectionValues& values) {
   fracture.local_radius = optional_number(values, "local_radius");
   fracture.incision = values.get<std::string>("incision");
   fracture.place = values.place;
+  if (fracture.toughness) warn_unread(values, "advance_threshold", "a toughness", scene);
   if (fracture.strength && !fracture.advance_threshold) fracture.advance_threshold = 0.5 * *fracture.strength;
   if (fracture.strength && *fracture.advance_threshold > *fracture.strength)
     return values.place_of("advance_threshold")

@@ -14,7 +14,7 @@ Expected<MeshSettings> read_mesh_section(const SectionValues& values, const std:
 Expected<MaterialSettings> read_material_section(const SectionValues& values, Scene& scene);
 ModelChoice read_model_section(const SectionValues& values, Scene& scene);
 Expected<SupportSettings> read_support(const SectionValues& values);
-Expected<FractureSettings> read_fracture_section(const SectionValues& values);
+Expected<FractureSettings> read_fracture_section(const SectionValues& values, Scene& scene);
 Expected<CrackSettings> read_crack(const SectionValues& values);
 Expected<InteractionSettings> read_interaction_section(const SectionValues& values, const std::filesystem::path& folder,
                                                        Scene& scene);

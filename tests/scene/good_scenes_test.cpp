@@ -284,6 +284,9 @@ TEST(GoodScene, WhatIsGivenInVainIsSaid) {
                           "folder/s.toml:7: 'mesh.nodes' is not read by a mesh from a file"));
   EXPECT_THAT(scene_of(spoil("", "[interaction]\nrecord = \"a.h5\"\n")).warnings,
               ElementsAre("folder/s.toml:35: 'interaction.record' is not read by response = \"exact\""));
+  EXPECT_THAT(scene_of(spoil("", "[fracture]\ntoughness = 300.0\nadvance_threshold = 1e5\n")).warnings,
+              ElementsAre("folder/s.toml:36: 'fracture.advance_threshold' is not read by a toughness"));
+  EXPECT_THAT(scene_of(spoil("", "[fracture]\nstrength = 2e5\nadvance_threshold = 1e5\n")).warnings, IsEmpty());
   EXPECT_THAT(
       scene_of(spoil("\"hyperelastic\"\nbeta = 100.0", "\"mass-spring\"")).warnings,
       ElementsAre(
