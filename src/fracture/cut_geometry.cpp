@@ -6,14 +6,10 @@
 
 #include <Eigen/Geometry>
 
+#include "mesh/nearest.h"
+
 namespace rhexis::fracture {
 namespace {
-
-/// Of the closed segment from p to q.
-Vec3 nearest_on_segment(const Vec3& p, const Vec3& q, const Vec3& at) {
-  const Vec3 way = q - p;
-  return p + std::clamp(way.dot(at - p) / way.squaredNorm(), 0.0, 1.0) * way;
-}
 
 bool overlap(const mesh::BoundingBox& box, const Vec3& from, const Vec3& to) {
   return (box.from.array() <= to.array()).all() && (from.array() <= box.to.array()).all();
@@ -31,25 +27,7 @@ double squared_distance(const mesh::BoundingBox& box, const Vec3& at) {
 
 }  // namespace
 
-Vec3 CutTriangle::nearest(const Vec3& at) const {
-  const Vec3 foot = projected(at);
-  bool inside = true;
-  Vec3 best = corner[0];
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3& p = corner[k];
-    const Vec3& q = corner[(k + 1) % 3];
-    if ((q - p).cross(foot - p).dot(normal) >= 0.0) continue;  // on the inner side of this side's line
-    inside = false;
-    const Vec3 candidate = nearest_on_segment(p, q, at);
-    const double distance = (candidate - at).squaredNorm();
-    if (distance < least) {
-      least = distance;
-      best = candidate;
-    }
-  }
-  return inside ? foot : best;
-}
+Vec3 CutTriangle::nearest(const Vec3& at) const { return mesh::nearest_in_triangle(corner, at).position; }
 
 CutGeometry::CutGeometry(std::span<const CutSurface::Triangle> triangles, double on_plane) : on_plane_(on_plane) {
   for (const CutSurface::Triangle& t : triangles) add({t.a, t.b, t.c});
@@ -83,7 +61,7 @@ CutGeometry CutGeometry::behind(std::span<const mesh::MeshEdit> history, double 
                std::find(part_ends.begin(), part_ends.end(), x) != part_ends.end();
       };
       return is_ahead(b) && is_ahead(c) && std::any_of(starts.begin(), starts.end(), [&](const Vec3& start) {
-               return (nearest_on_segment(b, c, start) - start).squaredNorm() <= gap * gap;
+               return (mesh::nearest_on_segment(b, c, start) - start).squaredNorm() <= gap * gap;
              });
     });
     if (!leads_here) continue;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/nearest.h"
 #include "mesh/quality.h"
 #include "mesh/surface.h"
 
@@ -20,35 +21,6 @@ constexpr double kThin = 0.25;
 constexpr double kLevel = 1e-3;
 /// Gaps on a line below this, in mean edges, are rounding between neighbours; so are barycentric coordinates below it.
 constexpr double kGap = 1e-7;
-
-double distance_to_segment(const Vec3& at, const Vec3& a, const Vec3& b) {
-  const Vec3 way = b - a;
-  const double size = way.squaredNorm();
-  const double part = size > 0.0 ? std::clamp((at - a).dot(way) / size, 0.0, 1.0) : 0.0;
-  return (at - a - part * way).norm();
-}
-
-/// Ericson's regions of a triangle.
-Vec3 nearest_on_triangle(const Vec3& p, const std::array<Vec3, 3>& x) {
-  const Vec3 ab = x[1] - x[0];
-  const Vec3 ac = x[2] - x[0];
-  const double d1 = ab.dot(p - x[0]);
-  const double d2 = ac.dot(p - x[0]);
-  if (d1 <= 0.0 && d2 <= 0.0) return x[0];
-  const double d3 = ab.dot(p - x[1]);
-  const double d4 = ac.dot(p - x[1]);
-  if (d3 >= 0.0 && d4 <= d3) return x[1];
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return x[0] + d1 / (d1 - d3) * ab;
-  const double d5 = ab.dot(p - x[2]);
-  const double d6 = ac.dot(p - x[2]);
-  if (d6 >= 0.0 && d5 <= d6) return x[2];
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return x[0] + d2 / (d2 - d6) * ac;
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 >= d3 && d5 >= d6) return x[1] + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (x[2] - x[1]);
-  return x[0] + (vb * ab + vc * ac) / (va + vb + vc);
-}
 
 /// The part of the way a..b in the closed tet; empty (from > to) when there is none.
 Surroundings::Interval clip(const std::array<Vec3, 4>& x, const Vec3& a, const Vec3& b) {
@@ -187,7 +159,9 @@ std::vector<TetId> Surroundings::tets_near(const mesh::TornMesh& body, const Cra
     Vec3 centroid = Vec3::Zero();
     for (const NodeId node : body.mesh().tet(tet)) centroid += 0.25 * body.mesh().node(node);
     for (std::size_t i = 0; i + 1 < crack.front.size(); ++i) {
-      if (distance_to_segment(centroid, crack.front[i].position, crack.front[i + 1].position) > radius) continue;
+      if ((mesh::nearest_on_segment(crack.front[i].position, crack.front[i + 1].position, centroid) - centroid).norm() >
+          radius)
+        continue;
       near.push_back(tet);
       return;
     }
@@ -253,7 +227,7 @@ Vec3 Surroundings::nearest_on_surface(const Vec3& at) const {
     // A corner further off than the nearest so far and a whole edge: not this one.
     const double corner = (triangle.corner[0] - at).norm();
     if (corner - 2.0 * reach_ > least) continue;
-    const Vec3 candidate = nearest_on_triangle(at, triangle.corner);
+    const Vec3 candidate = mesh::nearest_in_triangle(triangle.corner, at).position;
     const double distance = (candidate - at).norm();
     if (distance < least) {
       least = distance;

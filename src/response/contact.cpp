@@ -5,45 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/nearest.h"
+
 namespace rhexis::response {
 namespace {
 
 using mesh::TetFace;
 using mesh::TornMesh;
-
-/// The point of a triangle that is nearest to `at`, in area coordinates. Those of the corners that the nearest vertex
-/// or edge does not have are zero to the bit.
-Vec3 nearest_in_triangle(const std::array<Vec3, 3>& corner, const Vec3& at) {
-  const auto on_edge = [&](int from, int to) {
-    const Vec3 along = corner[static_cast<std::size_t>(to)] - corner[static_cast<std::size_t>(from)];
-    const double length = along.squaredNorm();
-    const double part = (at - corner[static_cast<std::size_t>(from)]).dot(along);
-    const double t = length > 0.0 ? std::clamp(part / length, 0.0, 1.0) : 0.0;
-    Vec3 weight = Vec3::Zero();
-    weight[from] = 1.0 - t;
-    weight[to] = t;
-    return weight;
-  };
-  const auto point = [&](const Vec3& weight) {
-    return Vec3(weight[0] * corner[0] + weight[1] * corner[1] + weight[2] * corner[2]);
-  };
-  const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-  const double twice_area = normal.squaredNorm();
-  if (twice_area > 0.0) {
-    Vec3 inside;  // of the foot of the perpendicular
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& a = corner[(k + 1) % 3];
-      const Vec3& b = corner[(k + 2) % 3];
-      inside[static_cast<Eigen::Index>(k)] = (b - a).cross(at - a).dot(normal) / twice_area;
-    }
-    if (inside.minCoeff() > 0.0) return inside / inside.sum();
-  }
-  Vec3 best = on_edge(0, 1);
-  for (const Vec3& other : {on_edge(1, 2), on_edge(2, 0)}) {
-    if ((point(other) - at).squaredNorm() < (point(best) - at).squaredNorm()) best = other;
-  }
-  return best;
-}
 
 std::array<Vec3, 3> corners_of(const TornMesh& body, TetFace face) {
   const auto nodes = mesh::face_nodes(body.mesh(), face);
@@ -52,7 +20,7 @@ std::array<Vec3, 3> corners_of(const TornMesh& body, TetFace face) {
 
 struct Nearest {
   TetFace face;
-  Vec3 weight = Vec3::Zero();
+  mesh::TrianglePoint point;
   double squared_distance = std::numeric_limits<double>::infinity();
 };
 
@@ -69,11 +37,9 @@ Nearest find_nearest(const TornMesh& body, const Vec3& at) {
     if ((at - at.cwiseMax(low).cwiseMin(high)).squaredNorm() >= best.squared_distance) continue;
     for (std::int8_t vertex = 0; vertex < 4; ++vertex) {
       const TetFace face{tet, vertex};
-      const auto corner = corners_of(body, face);
-      const Vec3 weight = nearest_in_triangle(corner, at);
-      const Vec3 foot = weight[0] * corner[0] + weight[1] * corner[1] + weight[2] * corner[2];
-      const double squared = (foot - at).squaredNorm();
-      if (squared < best.squared_distance && mesh::is_on_solved_surface(body, face)) best = {face, weight, squared};
+      const mesh::TrianglePoint point = mesh::nearest_in_triangle(corners_of(body, face), at);
+      const double squared = (point.position - at).squaredNorm();
+      if (squared < best.squared_distance && mesh::is_on_solved_surface(body, face)) best = {face, point, squared};
     }
   }
   return best;
@@ -113,8 +79,8 @@ std::optional<SurfacePoint> nearest_surface_point(const TornMesh& body, const Ve
   if (!std::isfinite(nearest.squared_distance)) return std::nullopt;
   const auto nodes = mesh::face_nodes(body.mesh(), nearest.face);
   const auto corner = corners_of(body, nearest.face);
-  Vec3 weight = nearest.weight;
-  const Vec3 foot = weight[0] * corner[0] + weight[1] * corner[1] + weight[2] * corner[2];
+  Vec3 weight = nearest.point.weight;
+  const Vec3& foot = nearest.point.position;
   Eigen::Index closest = 0;
   weight.maxCoeff(&closest);
   for (Eigen::Index k = 0; k < 3; ++k) {
