@@ -23,7 +23,7 @@ struct Crack {
   std::vector<FrontPoint>
       front;             ///< at least two, in order along the front; the first and last are on the surface or beyond it
   bool uniform = false;  ///< a plate: one direction and one length for all points
-  bool finished = false;  ///< the front has left the body: nothing is ahead of it
+  bool finished = false;  ///< the front has left the body or run into another crack: nothing is ahead of it
   double area = 0.0;      ///< m^2, of the surface swept so far, once (not both flanks)
 };
 

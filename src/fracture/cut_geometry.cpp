@@ -41,9 +41,23 @@ void CutGeometry::add(const std::array<Vec3, 3>& corner) {
   triangles_.push_back({corner, normal / twice_area, {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)}});
 }
 
+/// What was swept near by, of this crack and of others.
+struct CutGeometry::Earlier {
+  CutGeometry own;
+  CutGeometry others;
+};
+
 CutGeometry CutGeometry::behind(std::span<const mesh::MeshEdit> history, double mean_edge) const {
+  return earlier(history, mean_edge).own;
+}
+
+CutGeometry CutGeometry::others(std::span<const mesh::MeshEdit> history, double mean_edge) const {
+  return earlier(history, mean_edge).others;
+}
+
+CutGeometry::Earlier CutGeometry::earlier(std::span<const mesh::MeshEdit> history, double mean_edge) const {
   const double gap = kJoinGap * mean_edge;
-  CutGeometry found({}, on_plane_);
+  Earlier found{CutGeometry({}, on_plane_), CutGeometry({}, on_plane_)};
   std::vector<Vec3> starts = corners_of(triangles_, 0);
   const mesh::BoundingBox wide = box(kJoinReach * mean_edge);
   for (auto edit = history.rbegin(); edit != history.rend(); ++edit) {
@@ -64,8 +78,8 @@ CutGeometry CutGeometry::behind(std::span<const mesh::MeshEdit> history, double 
                return (mesh::nearest_on_segment(b, c, start) - start).squaredNorm() <= gap * gap;
              });
     });
+    (leads_here ? found.own : found.others).join(part);
     if (!leads_here) continue;
-    found.join(part);
     starts.insert(starts.end(), part_starts.begin(), part_starts.end());
   }
   return found;

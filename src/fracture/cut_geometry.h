@@ -40,6 +40,8 @@ class CutGeometry {
   /// their triangles, see CutSurface) is no further than kJoinGap from where this one starts, or one of those. Not
   /// other cracks that it meets: what is above those may be below this one. `mean_edge` in m.
   [[nodiscard]] CutGeometry behind(std::span<const mesh::MeshEdit> history, double mean_edge) const;
+  /// The other cracks: what earlier edits swept within kJoinReach of this surface and `behind` leaves out.
+  [[nodiscard]] CutGeometry others(std::span<const mesh::MeshEdit> history, double mean_edge) const;
   /// Adds the triangles of the other, behind its own.
   void join(const CutGeometry& other);
 
@@ -68,7 +70,9 @@ class CutGeometry {
   [[nodiscard]] bool is_on(const Vec3& at) const;
 
  private:
+  struct Earlier;
   void add(const std::array<Vec3, 3>& corner);
+  [[nodiscard]] Earlier earlier(std::span<const mesh::MeshEdit> history, double mean_edge) const;
 
   std::vector<CutTriangle> triangles_;
   double on_plane_ = 0.0;

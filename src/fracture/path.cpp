@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "fracture/cut_geometry.h"
 #include "fracture/front.h"
 
 namespace rhexis::fracture {
@@ -72,6 +73,37 @@ void lengthen(const Crack& crack, Advance& advance, double by) {
   const double factor = advance.length > 0.0 ? (advance.length + by) / advance.length : 0.0;
   for (std::size_t i = 0; i < advance.step.size(); ++i)
     advance.step[i] = factor > 0.0 ? Vec3(factor * advance.step[i]) : Vec3(by * crack.front[i].direction);
+}
+
+/// Ends each step at the first flank of another crack that it crosses. From a little behind the front, so that a point
+/// that has got there stays.
+void stop_at_flanks(const Crack& crack, Advance& advance, const mesh::TornMesh& body, const CutSurface& swept,
+                    const IncisionSettings& settings) {
+  const double edge = settings.mean_edge;
+  const CutGeometry surface(swept.triangles, kOnPlane * edge);
+  if (surface.triangles().empty()) return;
+  const CutGeometry flanks = surface.others(body.history(), edge);
+  if (flanks.triangles().empty()) return;
+  std::size_t stopped = 0;
+  for (std::size_t i = 0; i < crack.front.size(); ++i) {
+    const Vec3& at = crack.front[i].position;
+    Vec3& step = advance.step[i];
+    const double length = step.norm();
+    const Vec3 way = length > 0.0 ? Vec3(step / length) : crack.front[i].direction;
+    const auto met = flanks.crossing(at - 2.0 * kIntoFlank * edge * way, at + step);
+    if (!met) continue;
+    ++stopped;
+    const double allowed = std::clamp((met->at - at).dot(way) + kIntoFlank * edge, 0.0, length);
+    step = allowed * way;
+  }
+  if (stopped == 0) return;
+  if (crack.uniform) {
+    const Vec3 whole =
+        advance.step.front().norm() < advance.step.back().norm() ? advance.step.front() : advance.step.back();
+    std::fill(advance.step.begin(), advance.step.end(), whole);
+  }
+  advance.stopped = crack.uniform || stopped == crack.front.size();
+  describe(crack, advance);
 }
 
 std::vector<FrontPoint> moved_front(const Crack& crack, const Advance& advance) {
@@ -200,13 +232,17 @@ CutSurface sweep(const Crack& crack, const Advance& advance, double margin) {
 Incision cut_along(const mesh::TornMesh& body, const Surroundings& surroundings, const Crack& crack, Advance& advance,
                    const IncisionSettings& settings) {
   const double edge = surroundings.mean_edge();
-  Incision incision = incise(body, surroundings, sweep(crack, advance, kCutMargin * edge), settings);
+  const auto cut = [&] {
+    stop_at_flanks(crack, advance, body, sweep(crack, advance, kCutMargin * edge), settings);
+    return incise(body, surroundings, sweep(crack, advance, kCutMargin * edge), settings);
+  };
+  Incision incision = cut();
   for (int longer = 0; longer < kMostLengthenings; ++longer) {
-    if (!incision.edit.empty() || has_left(crack, advance, surroundings)) break;
+    if (!incision.edit.empty() || advance.stopped || has_left(crack, advance, surroundings)) break;
     lengthen(crack, advance, kLengthening * edge);
     if (!crack.uniform) end_on_surface(crack, advance.step, surroundings);
     describe(crack, advance);
-    incision = incise(body, surroundings, sweep(crack, advance, kCutMargin * edge), settings);
+    incision = cut();
   }
   return incision;
 }
@@ -223,7 +259,8 @@ std::vector<Crack> advanced(const Crack& crack, const Advance& advance, const Su
   }
   if (cracks.empty()) cracks.push_back({front, crack.uniform, true, 0.0});
   cracks.front().area = crack.area + swept_area(crack, advance, surroundings);
-  for (Crack& one : cracks) one.finished = one.finished || has_nothing_ahead(one, surroundings, body);
+  for (Crack& one : cracks)
+    one.finished = one.finished || advance.stopped || has_nothing_ahead(one, surroundings, body);
   return cracks;
 }
 

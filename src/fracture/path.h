@@ -29,6 +29,7 @@ struct Advance {
   double angle = 0.0;      ///< radians, of the mean step, from +x in the x-y plane, in (-pi, pi]
   double turn = 0.0;       ///< radians, the largest angle between a step and the direction before it
   double value = 0.0;      ///< Pa, the largest among the points
+  bool stopped = false;    ///< every point has run into the flank of another crack: see cut_along
 };
 
 /// Empty when the criterion is met at no point. A plate goes one way by one length. Elsewhere each met point takes its
@@ -48,16 +49,21 @@ struct Advance {
 inline constexpr double kCutMargin = 0.5;
 inline constexpr double kLengthening = 0.25;
 inline constexpr int kMostLengthenings = 12;
+/// How far beyond the flank of another crack a step ends that runs into it, in mean edges: the nodes of a flank may lie
+/// that far off what was swept.
+inline constexpr double kIntoFlank = 0.25;
 
-/// The incision along an advance, which is made longer until it opens something or the front has left the body.
+/// The incision along an advance, which is made longer until it opens something, the front has left the body, or all of
+/// it has run into the flank of another crack (or an earlier part of this one): there a step ends, and what is beyond
+/// that flank is whole.
 /// `advance` is what was done. An empty edit: nothing is there to cut, and the crack is finished.
 [[nodiscard]] Incision cut_along(const mesh::TornMesh& body, const Surroundings& surroundings, const Crack& crack,
                                  Advance& advance, const IncisionSettings& settings);
 
 /// The crack after the advance; `body` has taken the edit. Fronts end on the surface of the intact body and have points
 /// about a mean edge apart. More than one where the front has come to pass through separate parts; a crack with
-/// `finished` set when it has left the body, or has nothing in the solve ahead of it. Never empty. The area swept so
-/// far goes with the first.
+/// `finished` set when it has left the body, was stopped by other cracks, or has nothing in the solve ahead of it.
+/// Never empty. The area swept so far goes with the first.
 [[nodiscard]] std::vector<Crack> advanced(const Crack& crack, const Advance& advance, const Surroundings& surroundings,
                                           const mesh::TornMesh& body);
 

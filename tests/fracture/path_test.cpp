@@ -144,6 +144,76 @@ TEST(CutAlong, OpensNothingInTheGapOfAnotherCrack) {
   }
 }
 
+/// Tets in the solve of which all corners lie beyond `limit` along the axis.
+std::vector<TetId> tets_beyond(const CutBody& cut, int axis, double limit) {
+  std::vector<TetId> tets;
+  for (std::size_t t = 0; t < cut.body.mesh().tet_count(); ++t) {
+    const auto x = mesh::corners(cut.body.mesh(), TetId(t));
+    if (cut.body.is_solved(TetId(t)) && std::all_of(x.begin(), x.end(), [&](const Vec3& v) { return v[axis] > limit; }))
+      tets.emplace_back(t);
+  }
+  return tets;
+}
+
+/// Runs a crack straight on until it is finished; the body beyond `flank` has to stay as it is.
+void expect_end_at(CutBody& cut, Crack crack, const Vec3& way, int axis, double flank) {
+  const double edge = cut.surroundings.mean_edge();
+  const std::vector<TetId> beyond = tets_beyond(cut, axis, flank + edge);
+  ASSERT_FALSE(beyond.empty());
+  int steps = 0;
+  for (; !crack.finished && steps < 20; ++steps) {
+    auto advance = plan_advance(crack, std::vector(crack.uniform ? 1 : crack.front.size(), towards(way, 1.7 * edge)),
+                                cut.surroundings);
+    ASSERT_TRUE(advance);
+    const Incision incision = cut_along(cut.body, cut.surroundings, crack, *advance, cut.settings);
+    if (incision.edit.empty()) break;
+    cut.apply(incision.edit);
+    const std::vector<Crack> after = advanced(crack, *advance, cut.surroundings, cut.body);
+    ASSERT_EQ(after.size(), 1u);
+    crack = after[0];
+  }
+  EXPECT_TRUE(crack.finished);
+  EXPECT_GT(steps, 1);
+  for (const FrontPoint& point : crack.front) {
+    EXPECT_GE(point.position[axis], flank - edge);
+    EXPECT_LE(point.position[axis], flank + (kIntoFlank + 1e-9) * edge);
+  }
+  EXPECT_EQ(tets_beyond(cut, axis, flank + edge), beyond);
+}
+
+TEST(CutAlong, EndsAtTheFlankOfAnOlderCrackOfAPlate) {
+  for (const IncisionMethod method : {IncisionMethod::keep_nodes, IncisionMethod::split})
+    for (const double slant : {0.0, 0.02}) {
+      CutBody cut(plate(), method);
+      cut.cut(make_crack(Vec3(0.15 - slant, 0.04, 0.0), Vec3(0.15 + slant, 0.2, 0.0), Vec3::UnitZ(), cut.surroundings)
+                  ->surface);
+      expect_end_at(cut, front_at(0.04, 0.12, 0.01), Vec3::UnitX(), 0, 0.15);
+    }
+}
+
+TEST(CutAlong, EndsAtTheFlankOfAnOlderCrackOfABar) {
+  for (const IncisionMethod method : {IncisionMethod::keep_nodes, IncisionMethod::split}) {
+    CutBody cut(*mesh::make_bar({Vec3(0.1, 0.1, 0.3)}, 3000), method);
+    cut.cut(make_crack(Vec3(0.05, 0.06, 0.07), Vec3(0.05, 0.06, 0.23), Vec3::UnitX(), cut.surroundings)->surface);
+    expect_end_at(cut, across_bar(cut.surroundings, 0.01), Vec3::UnitY(), 1, 0.06);
+  }
+}
+
+// Beside the older crack it goes on.
+TEST(CutAlong, PassesAnOlderCrackThatIsNotInItsWay) {
+  CutBody cut(plate());
+  cut.cut(make_crack(Vec3(0.1, 0.04, 0.0), Vec3(0.15, 0.04, 0.0), Vec3::UnitZ(), cut.surroundings)->surface);
+  Crack crack = front_at(0.04, 0.12, 0.01);
+  for (int step = 0; step < 4; ++step) {
+    auto advance = plan_advance(crack, std::vector{towards(Vec3::UnitX(), 0.03)}, cut.surroundings);
+    cut.apply(cut_along(cut.body, cut.surroundings, crack, *advance, cut.settings).edit);
+    EXPECT_FALSE(advance->stopped);
+    crack = advanced(crack, *advance, cut.surroundings, cut.body).at(0);
+  }
+  EXPECT_FALSE(crack.finished);
+  EXPECT_GT(crack.front[0].position[0], 0.15);
+}
+
 TEST(CutAlong, EndsWhereTheBodyEnds) {
   CutBody cut(plate());
   const Crack crack = front_at(0.2395, 0.1199, 0.01);
