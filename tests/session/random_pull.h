@@ -14,6 +14,7 @@
 #include "mesh/generate.h"
 #include "mesh/quality.h"
 #include "session/tear_session.h"
+#include "tests/support/hinges.h"
 #include "tests/support/torn_body_oracle.h"
 
 namespace rhexis::test {
@@ -28,6 +29,9 @@ struct PullTally {
   double worst_move = 0.0;       ///< largest |u - u_oracle| on the local boundary / the hand's way
   double worst_ratio = 1.0;      ///< smallest radius ratio of a changed tet / the least of the intact mesh
   int most_advances = 0;
+  int kept = 0;    ///< pulls with keep-nodes
+  int hinges = 0;  ///< nodes by which alone their bodies hang together at the end
+  int hinged = 0;  ///< pulls that end with some
 };
 
 class RandomPull {
@@ -45,6 +49,7 @@ class RandomPull {
     const std::uint64_t bits = bits_of(tear_->body());
     ++tally.pulls;
     pull(tally, check_share);
+    count_hinges(tally);
     while (tear_->body().topology() > start) ASSERT_TRUE(tear_->undo()) << seed_;
     EXPECT_EQ(bits_of(tear_->body()), bits) << "seed " << seed_;
   }
@@ -158,6 +163,14 @@ class RandomPull {
     tally.advances += advances;
     tally.most_advances = std::max(tally.most_advances, advances);
     if (apart) ++tally.fell_apart;
+  }
+
+  void count_hinges(PullTally& tally) const {
+    if (settings_.incision != fracture::IncisionMethod::keep_nodes) return;
+    const std::vector<NodeId> hinges = hinges_of(tear_->body());
+    ++tally.kept;
+    tally.hinges += static_cast<int>(hinges.size());
+    if (!hinges.empty()) ++tally.hinged;
   }
 
   /// Of every tet that the last edit changed.

@@ -28,6 +28,7 @@ TEST(RandomPulls, TearWithoutHarmAndWithTheForceOfTheTornBody) {
                  tally.topologies_checked, tally.worst_stiffness, tally.worst_move);
   test::measured("flattest changed tet: {:.3f} of the intact worst (bound {})", tally.worst_ratio,
                  fracture::kFlattestTet);
+  test::measured("keep-nodes: {} hinges in {} of {} pulls", tally.hinges, tally.hinged, tally.kept);
   EXPECT_GT(tally.advances, count);  // the sweep tears, it does not only pull
   EXPECT_GT(tally.topologies_checked, count / 10);
 }
