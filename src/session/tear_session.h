@@ -87,6 +87,7 @@ class TearSession {
     double seconds = 0.0;                                       ///< spent on planning it
     AdvanceRecord record;                                       ///< filled in as far as is known
   };
+  void tear(TickReport& report, const Observer& observer);
   [[nodiscard]] std::optional<Judged> judge(std::size_t crack) const;
   bool run_on(std::size_t crack, Judged judged, TickReport& report, const Observer& observer);
   bool start_crack(TickReport& report, const Observer& observer);
