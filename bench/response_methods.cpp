@@ -189,7 +189,7 @@ void HeldPointTick(benchmark::State& state) {
   double at = 0.0;
   for (auto _ : state) {
     // What a tick does: take the newest snapshot as bytes, and evaluate it.
-    const ForceSnapshot snapshot = make_snapshot(law, 10.0, 1);
+    const ForceSnapshot snapshot = make_snapshot(law, {.force_limit = 10.0});
     benchmark::DoNotOptimize(force_at(snapshot, Vec3(at, -at, 1e-3)));
     benchmark::DoNotOptimize(law.nodal_forces(Vec3(at, -at, 1e-3)));
     at += 1e-9;

@@ -25,6 +25,8 @@ struct DeviceTraits {
   double reach = 0.0;       ///< m, edge of the cube it works in; 0: unbounded
   double resolution = 0.0;  ///< m; 0: none worth the name
   double max_force = 0.0;   ///< N; 0: it cannot push back
+  /// Its position counts from where the hand took hold, as a pointer's does. Else the loop notes where that was.
+  bool counts_from_hold = false;
 };
 
 /// Life: made, opened, read and written by one thread in turn, closed. A driver that has to load firmware or find its

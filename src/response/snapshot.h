@@ -22,11 +22,13 @@ struct ForceSnapshot {
 
   std::array<double, 9> stiffness{};  ///< N/m, by rows: force on the body for a displacement beyond `rest`
   std::array<double, 3> rest{};       ///< m, displacement of the point by the loads alone
+  std::array<double, 3> start{};      ///< m, the same when the hand took hold: its own displacement counts from there
   std::array<double, 3> normal{};     ///< outward, unit
   double force_limit = 0.0;           ///< N, on the length of the force; 0: none
   std::uint64_t topology = 0;         ///< number of edits that the body had taken
+  std::uint64_t number = 0;           ///< counts publications from 1, so that a recording can name them; 0: none yet
   std::uint32_t flags = 0;
-  std::uint32_t unused = 0;
+  std::uint32_t grasp = 0;  ///< counts the times that the hand took hold: another number, another hold
 };
 static_assert(std::is_trivially_copyable_v<ForceSnapshot> && std::is_standard_layout_v<ForceSnapshot>);
 

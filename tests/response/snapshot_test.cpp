@@ -75,8 +75,13 @@ ContactLaw some_law(ContactMode mode) {
 TEST(ForceSnapshot, FeelsWhatTheLawSays) {
   for (const ContactMode mode : {ContactMode::hold, ContactMode::push}) {
     const ContactLaw law = some_law(mode);
-    const ForceSnapshot snapshot = make_snapshot(law, 0.0, 7);
+    const ForceSnapshot snapshot = make_snapshot(
+        law, {.number = 9, .topology = 7, .grasp = 3, .force_limit = 4.0e3, .start = Vec3(1e-3, -2e-3, 5e-4)});
     EXPECT_EQ(snapshot.topology, 7u);
+    EXPECT_EQ(snapshot.number, 9u);
+    EXPECT_EQ(snapshot.grasp, 3u);
+    EXPECT_EQ(snapshot.force_limit, 4.0e3);
+    EXPECT_EQ(snapshot.start, (std::array<double, 3>{1e-3, -2e-3, 5e-4}));
     int pressed = 0;
     for (int k = 0; k < 50; ++k) {
       const Vec3 hand(0.01 * std::sin(k), 0.02 * std::cos(2 * k), 0.015 * std::sin(3 * k));
@@ -92,15 +97,15 @@ TEST(ForceSnapshot, IsLimitedInLengthAndNotInDirection) {
   const ContactLaw law = some_law(ContactMode::hold);
   const Vec3 hand(0.05, -0.02, 0.01);
   const double full = law.force(hand).norm();
-  const Felt felt = force_at(make_snapshot(law, 0.25 * full, 0), hand);
+  const Felt felt = force_at(make_snapshot(law, {.force_limit = 0.25 * full}), hand);
   EXPECT_TRUE(felt.limited);
   EXPECT_NEAR(felt.force.norm(), 0.25 * full, 1e-15 * full);
   EXPECT_NEAR(felt.force.normalized().dot(law.force(hand).normalized()), 1.0, 1e-15);
-  EXPECT_FALSE(force_at(make_snapshot(law, 2.0 * full, 0), hand).limited);
+  EXPECT_FALSE(force_at(make_snapshot(law, {.force_limit = 2.0 * full}), hand).limited);
 }
 
 TEST(ForceSnapshot, IsZeroWithoutAHoldAndForWhatIsNotANumber) {
-  ForceSnapshot snapshot = make_snapshot(some_law(ContactMode::hold), 0.0, 0);
+  ForceSnapshot snapshot = make_snapshot(some_law(ContactMode::hold), {});
   const Vec3 hand(0.05, -0.02, 0.01);
   EXPECT_GT(force_at(snapshot, hand).force.norm(), 0.0);
   EXPECT_TRUE(force_at(snapshot, Vec3(0.0, std::numeric_limits<double>::quiet_NaN(), 0.0)).force.isZero(0.0));
@@ -130,7 +135,7 @@ TEST(ForceSnapshot, TakesNoMemoryInAThousandTicks) {
     before = allocations;
     for (int tick = 0; tick < 1000; ++tick) {
       const Vec3 hand(1e-5 * tick, -2e-5 * tick, 1e-3);
-      const ForceSnapshot snapshot = make_snapshot(law, 3.0, 1);
+      const ForceSnapshot snapshot = make_snapshot(law, {.force_limit = 3.0});
       sum += force_at(snapshot, hand).force;
       sum += law.force(hand);
       nodal += law.nodal_forces(hand);
