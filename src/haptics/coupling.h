@@ -15,7 +15,7 @@
 
 namespace rhexis::haptics {
 
-/// A law in the measure of the device. Not of a definite sign: what is negative by rounding is taken as zero.
+/// A law in the measure of the device.
 struct FeltLaw {
   Vec3 stiffness = Vec3::Zero();  ///< N/m, of the body along each of `along`; not negative
   Mat3 along = Mat3::Identity();  ///< columns: orthonormal
@@ -23,6 +23,7 @@ struct FeltLaw {
   Vec3 normal = Vec3::UnitZ();    ///< outward, unit
   bool pushes_only = false;       ///< no force where the body would be pulled
 
+  /// Of the symmetric part of `stiffness`, without what is negative: no potential has the rest.
   static FeltLaw make(const Mat3& stiffness, const Vec3& rest, const Vec3& normal, bool pushes_only) noexcept;
 };
 

@@ -16,22 +16,23 @@ namespace rhexis::haptics {
 
 class EnergyLedger {
  public:
-  explicit EnergyLedger(double reserve) : reserve_(reserve) {}
+  /// `restrains`: false only watches, and every gain is had for nothing.
+  EnergyLedger(double reserve, bool restrains) : reserve_(reserve), restrains_(restrains) {}
 
-  /// A new hold: an empty store.
-  void restart(double gain) noexcept { *this = EnergyLedger(reserve_, gain); }
+  /// A new hold: gain zero, nothing stored.
+  void restart() noexcept { *this = EnergyLedger(reserve_, restrains_); }
 
   /// The device has moved: it was given `out` (J), and the store would hold `before` and `after` (J) at gain one.
   void moved(double out, double before, double after) noexcept {
     given_ += out;
-    balance_ = std::min(reserve_, balance_ - out - gain_ * (after - before));
+    credit(-out - gain_ * (after - before));
   }
   /// The law is another one, at the same place.
   void law_changed(double before, double after) noexcept;
   /// Towards `target`, by no more than `rise` upwards. `energy` (J): of the law here.
   void move_gain(double target, double rise, double energy) noexcept;
   /// The store has given energy away by slipping.
-  void slipped(double energy) noexcept { balance_ = std::min(reserve_, balance_ + gain_ * energy); }
+  void slipped(double energy) noexcept { credit(gain_ * energy); }
   /// What is missing beyond `recoverable` (J) is paid by the gain.
   void settle(double recoverable, double energy) noexcept;
 
@@ -41,9 +42,10 @@ class EnergyLedger {
   [[nodiscard]] double given() const { return given_; }  ///< J, to the hand since it took hold, less what it put in
 
  private:
-  EnergyLedger(double reserve, double gain) : reserve_(reserve), gain_(gain) {}
+  void credit(double energy) noexcept { balance_ = std::min(reserve_, balance_ + energy); }
 
   double reserve_;
+  bool restrains_;
   double gain_ = 0.0;  ///< of the elastic force, in [0, 1]
   double balance_ = 0.0;
   double given_ = 0.0;

@@ -27,8 +27,8 @@ class Motion {
   Motion() = default;
   explicit Motion(std::vector<Leg> legs);
 
-  /// At the end of tick `tick` of the motion, 1 ms each: 0 lies one tick behind the beginning, as in `rhexis tear`.
-  /// After the last leg: where that ended, or zero where it lets go.
+  /// After `tick` ticks of the motion, 1 ms each: the same places as `rhexis tear` goes through. Behind the last leg:
+  /// where that ended.
   [[nodiscard]] Place at(std::uint64_t tick) const noexcept;
   [[nodiscard]] std::uint64_t ticks() const noexcept { return ends_.empty() ? 0 : ends_.back(); }
   [[nodiscard]] const std::vector<Leg>& legs() const { return legs_; }

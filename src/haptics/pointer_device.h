@@ -33,6 +33,7 @@ class PointerDevice final : public Device {
   };
 
   DeviceTraits traits_ = make_traits();
+  Target sent_;  ///< the writer's
   NewestValue<Target> newest_;
   Target target_;  ///< the reader's
 };

@@ -37,43 +37,49 @@ class HapticTick {
  private:
   enum class Phase { idle, holding, releasing };
 
-  void take_up(const response::ForceSnapshot& snapshot, bool readable) noexcept;
-  void take_hold(const Vec3& position) noexcept;
+  void take_up(const response::ForceSnapshot& snapshot) noexcept;
   void follow_device(const Vec3& position) noexcept;
+  void change_phase(bool device_is_there) noexcept;
+  void take_hold() noexcept;
   void follow_law() noexcept;
   void close_grip() noexcept;
-  void move_gain() noexcept;
+  void move_presence(bool nothing_is_wrong) noexcept;
+  void find_force() noexcept;
+  [[nodiscard]] Vec3 damping_force() const noexcept;
+  [[nodiscard]] bool is_held_by(std::uint32_t grasp) const noexcept;
   [[nodiscard]] double fading() const noexcept;
-  [[nodiscard]] double limit() const noexcept;
-  [[nodiscard]] Vec3 damped() noexcept;
-  [[nodiscard]] TickOutput output(std::uint32_t flags) const noexcept;
-  void drop() noexcept;
+  [[nodiscard]] double limit_now() const noexcept;
+  [[nodiscard]] FeltLaw newest_law() const noexcept;
+  [[nodiscard]] HandState hand_state(const Reading& reading) const noexcept;
 
   TickSettings settings_;
   double device_limit_;    ///< N, of settings and device; infinite: none
   bool counts_from_hold_;  ///< as DeviceTraits
-  double smoothing_;       ///< of the velocity: part of the new value in each tick
+  double smoothing_;       ///< of the velocity: the part that a new value has
   std::uint64_t tick_ = 0;
-  std::uint32_t law_age_ = 0;         ///< ticks since a law was taken up
-  std::uint32_t up_to_date_age_ = 0;  ///< ticks since one was that is not out of date
-  bool law_is_readable_ = false;
+
+  response::ForceSnapshot newest_;    ///< the last that could be read
+  bool newest_is_readable_ = false;   ///< the last that came could be
+  std::uint64_t number_ = 0;          ///< of the last that came
+  std::uint32_t law_age_ = 0;         ///< ticks since one came
+  std::uint32_t up_to_date_age_ = 0;  ///< ticks since one came that is not out of date
+
+  std::optional<Vec3> position_;  ///< m, of the device, when it was last there
+  bool was_there_ = false;        ///< in the last tick
+  Vec3 velocity_ = Vec3::Zero();  ///< m/s, of the device, low-passed
 
   Phase phase_ = Phase::idle;
-  std::uint32_t grasp_ = 0;  ///< of the hold
-  std::uint32_t held_ticks_ = 0;
-  std::uint64_t number_ = 0;        ///< of the newest snapshot
-  response::ForceSnapshot newest_;  ///< the last that could be read
-  FeltLaw law_;                     ///< in force: of `grasp_`
-  double scene_limit_ = 0.0;        ///< N, of the law in force; 0: none
-
-  std::optional<Vec3> last_position_;  ///< m, as the device gave it
-  Vec3 zero_ = Vec3::Zero();           ///< m, where the device took hold
-  Vec3 at_ = Vec3::Zero();             ///< m, of the device from `zero_`
-  Vec3 velocity_ = Vec3::Zero();       ///< m/s, low-passed
-  Coupled coupled_;                    ///< at `at_`, by the law in force
-  Vec3 force_ = Vec3::Zero();          ///< N, on the hand, of this tick
-  double presence_ = 0.0;              ///< in [0, 1]: of all force, by taking hold, letting go, and late laws
+  std::uint32_t grasp_ = 0;   ///< of the hold
+  int held_ticks_ = 0;        ///< up to settings_.ramp_ticks
+  Vec3 zero_ = Vec3::Zero();  ///< m, position of the device where it took hold
+  Vec3 at_ = Vec3::Zero();    ///< m, of the device from there
+  FeltLaw law_;               ///< in force
+  double limit_ = 0.0;        ///< N, in force
+  Coupled coupled_;           ///< at at_, by these
+  double presence_ = 0.0;     ///< in [0, 1], of all force: taking hold, letting go, late laws
   EnergyLedger ledger_;
+  Vec3 force_ = Vec3::Zero();  ///< N, on the hand
+  bool is_clipped_ = false;    ///< that was to be longer
 };
 
 }  // namespace rhexis::haptics

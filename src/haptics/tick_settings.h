@@ -44,6 +44,9 @@ struct TickSettings {
 /// Errors: a number out of range, or one that contradicts another; in words.
 [[nodiscard]] Expected<void> check_settings(const TickSettings& settings);
 
+/// The part that a new value has in a first-order low-pass of this cut-off (Hz), once a tick.
+[[nodiscard]] double smoothing_of(double cutoff);
+
 /// Hz: the held body gives out no energy over any closed loop of motions below this frequency; 0 where the damping is
 /// too small for any, infinite for a rigid hold, which no device feels.
 [[nodiscard]] double passive_below(const TickSettings& settings);

@@ -21,7 +21,9 @@ struct Histogram {
   [[nodiscard]] double part_below(double value) const;
 };
 
-enum class LateCause : std::uint8_t { none, woken_late, own_work };
+/// Why a tick began late: the system woke the thread late; it took the processor away in the tick before; that tick
+/// was long by itself.
+enum class LateCause : std::uint8_t { none, woken_late, interrupted, own_work };
 
 struct TickReport {
   std::uint64_t ticks = 0;

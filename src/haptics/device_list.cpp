@@ -1,0 +1,38 @@
+#include "haptics/device_list.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/nearest_name.h"
+#include "haptics/pointer_device.h"
+#include "haptics/replay_device.h"
+#include "haptics/script_device.h"
+
+namespace rhexis::haptics {
+
+std::vector<DeviceTraits> known_devices() {
+  return {PointerDevice::make_traits(), ScriptDevice::make_traits(), ReplayDevice::make_traits(),
+          EmulatorDevice::make_traits({})};
+}
+
+Expected<std::unique_ptr<Device>> make_device(const std::string& name, DeviceRequest request) {
+  if (name == PointerDevice::kName) return std::make_unique<PointerDevice>();
+  if (name == EmulatorDevice::kName)
+    return std::make_unique<EmulatorDevice>(request.emulator, std::move(request.motion));
+  if (name == ScriptDevice::kName) {
+    if (request.motion.legs().empty()) return fail("device 'script' has nothing to do", "a scene with a [[pull]]");
+    return std::make_unique<ScriptDevice>(std::move(request.motion));
+  }
+  if (name == ReplayDevice::kName) {
+    if (request.readings.empty()) return fail("device 'replay' has nothing to play", "a recording");
+    return std::make_unique<ReplayDevice>(std::move(request.readings));
+  }
+  std::vector<std::string> names;
+  for (const DeviceTraits& traits : known_devices()) names.push_back(traits.name);
+  const std::string near = nearest_name(name, names);
+  return fail(fmt::format("unknown device '{}'", name),
+              near.empty() ? fmt::format("one of {}", fmt::join(names, ", ")) : "did you mean '" + near + "'?");
+}
+
+}  // namespace rhexis::haptics
