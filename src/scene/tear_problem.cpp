@@ -18,8 +18,8 @@ Expected<void> check_script(const Scene& scene) {
                 scene.file);
   if (scene.pulls.empty()) return fail("nothing pulls at the body", "add a [[pull]]", scene.file);
   if (scene.model.kind != model::ModelKind::linear)
-    return scene.model.kind_place.fail(
-        fmt::format("a body with model {} cannot be torn yet", model_name(scene)), "kind = \"linear\"");
+    return scene.model.kind_place.fail(fmt::format("a body with model {} cannot be torn yet", model_name(scene)),
+                                       "kind = \"linear\"");
   if (!scene.pressures.empty())
     return scene.pressures.front().faces.place.fail("a pressure follows the surface, which the linear model cannot",
                                                     "a [[traction]] in a fixed direction");

@@ -13,7 +13,8 @@ std::size_t number_of(mesh::TetFace face) { return 4 * face.tet.index() + static
 std::vector<TetId> touched_tets(const mesh::TornMesh& body, const mesh::MeshEdit& edit) {
   std::vector<NodeId> nodes;
   std::vector<TetId> tets = edit.removed;
-  for (const TetId tet : edit.removed) nodes.insert(nodes.end(), body.mesh().tet(tet).begin(), body.mesh().tet(tet).end());
+  for (const TetId tet : edit.removed)
+    nodes.insert(nodes.end(), body.mesh().tet(tet).begin(), body.mesh().tet(tet).end());
   for (const mesh::RewiredTet& change : edit.rewired) {
     nodes.insert(nodes.end(), change.before.begin(), change.before.end());
     nodes.insert(nodes.end(), change.after.begin(), change.after.end());
@@ -21,7 +22,6 @@ std::vector<TetId> touched_tets(const mesh::TornMesh& body, const mesh::MeshEdit
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   for (const NodeId node : nodes) {
-    if (node.index() >= body.mesh().node_count()) continue;  // a copy that has gone with the edit
     const auto around = body.tets_around(node);
     tets.insert(tets.end(), around.begin(), around.end());
   }
@@ -68,9 +68,6 @@ SurfaceTracker::SurfaceTracker(const mesh::TornMesh& body)
 SurfaceChange SurfaceTracker::follow(const mesh::TornMesh& body, const mesh::MeshEdit& edit) {
   SurfaceChange change;
   change.first_new = static_cast<std::uint32_t>(node_.size());
-  for (std::size_t node = body.mesh().node_count(); node < vertex_.size(); ++node) {
-    if (vertex_[node] != kNone) node_[static_cast<std::size_t>(vertex_[node])] = NodeId();
-  }
   vertex_.resize(body.mesh().node_count(), kNone);
   for (const mesh::MovedNode& move : edit.moved) {
     if (const auto vertex = vertex_of(move.node)) change.moved.push_back(*vertex);

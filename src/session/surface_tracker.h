@@ -27,11 +27,10 @@ class SurfaceTracker {
   /// Vertices in the order of their nodes, faces in the order of (tet, vertex).
   explicit SurfaceTracker(const mesh::TornMesh& body);
 
-  /// After `body` has taken `edit`, or has given it back. A copied node that goes with an edit leaves its vertex behind,
-  /// in no face, and the next copy of that number gets another one.
+  /// After `body` has taken `edit`. One that gives an edit back is tracked anew.
   SurfaceChange follow(const mesh::TornMesh& body, const mesh::MeshEdit& edit);
 
-  /// Per vertex slot; not valid for a vertex whose node has gone.
+  /// Per vertex slot.
   [[nodiscard]] const std::vector<NodeId>& nodes() const { return node_; }
   /// Per face slot: 3 vertices, counter-clockwise from outside; three times the same: empty.
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& faces() const { return faces_; }
@@ -49,12 +48,12 @@ class SurfaceTracker {
   std::uint32_t vertex_for(NodeId node);
   void fill(std::uint32_t slot, const mesh::TornMesh& body, mesh::TetFace face);
 
-  std::vector<NodeId> node_;              ///< per vertex
-  std::vector<std::int32_t> vertex_;      ///< per node; -1: none
-  std::vector<mesh::TetFace> tet_;        ///< per face slot; an invalid tet: empty
+  std::vector<NodeId> node_;          ///< per vertex
+  std::vector<std::int32_t> vertex_;  ///< per node; -1: none
+  std::vector<mesh::TetFace> tet_;    ///< per face slot; an invalid tet: empty
   std::vector<std::array<std::uint32_t, 3>> faces_;
-  std::vector<std::int32_t> slot_;        ///< per face of a tet, 4 a tet; -1: none
-  std::vector<std::uint32_t> free_;       ///< slots that are empty; the last one is filled next
+  std::vector<std::int32_t> slot_;   ///< per face of a tet, 4 a tet; -1: none
+  std::vector<std::uint32_t> free_;  ///< slots that are empty; the last one is filled next
 };
 
 /// No other tet that is alive shares this face of one that is.

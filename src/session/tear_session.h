@@ -63,6 +63,8 @@ class TearSession {
   /// One per crack that still runs.
   [[nodiscard]] const std::vector<fracture::LocalObject>& local_objects() const { return local_; }
   [[nodiscard]] const std::vector<AdvanceRecord>& advances() const { return advances_; }
+  /// Per node, copies too: a support gives some component of its displacement.
+  [[nodiscard]] const std::vector<std::uint8_t>& supported() const { return supported_; }
   [[nodiscard]] int pieces() const { return static_cast<int>(pieces_.count()); }
   [[nodiscard]] double mean_edge() const { return surroundings_.mean_edge(); }  ///< m, of the intact body
   [[nodiscard]] double crack_area() const;                                      ///< m^2

@@ -118,7 +118,8 @@ TEST(TearProblem, APressurePushesOnTheSurfaceAtRestForAHand) {
   const Expected<TearProblem> problem =
       build_for_hand(replaced(kPlate, "[fracture]", "[[pressure]]\nside = \"-x\"\nvalue = 10.0\n[fracture]"));
   ASSERT_TRUE(problem.has_value()) << problem.error().message();
-  EXPECT_THAT(problem->warnings, testing::ElementsAre(testing::HasSubstr("s.toml:22: the pressure acts on the surface")));
+  EXPECT_THAT(problem->warnings,
+              testing::ElementsAre(testing::HasSubstr("s.toml:21: the pressure acts on the surface")));
   Vec3 sum = Vec3::Zero();
   for (Eigen::Index node = 0; node < problem->body.dead_force.size() / 3; ++node)
     sum += problem->body.dead_force.segment<3>(3 * node);
@@ -127,15 +128,14 @@ TEST(TearProblem, APressurePushesOnTheSurfaceAtRestForAHand) {
 }
 
 TEST(TearProblem, AHandIsHeldToWhatIsWrongForAll) {
-  const Expected<TearProblem> free = build_for_hand(
-      replaced(kPlate, "[[support]]\nset = \"+x\"\nx = 0.0\ny = 0.0\nz = 0.0\n", ""));
+  const Expected<TearProblem> free =
+      build_for_hand(replaced(kPlate, "[[support]]\nset = \"+x\"\nx = 0.0\ny = 0.0\nz = 0.0\n", ""));
   ASSERT_FALSE(free.has_value());
   EXPECT_EQ(free.error().message(), "s.toml: nothing holds the body (add a [[support]])");
   const Expected<TearProblem> recorded = build_for_hand(
       replaced(kPlate, "[[crack]]", "[interaction]\nresponse = \"recorded\"\nrecord = \"a.h5\"\n[[crack]]"));
   ASSERT_FALSE(recorded.has_value());
-  EXPECT_EQ(recorded.error().message(),
-            "s.toml:22: response = \"recorded\" is not there yet (response = \"exact\")");
+  EXPECT_EQ(recorded.error().message(), "s.toml:22: response = \"recorded\" is not there yet (response = \"exact\")");
 }
 
 TEST(TearProblem, PushAndBlendAreRead) {
