@@ -26,7 +26,7 @@ struct OpenBody {
   std::string model;  ///< that the scene names
   TearStart start;
   SurfaceTracker surface;
-  std::size_t first_topology = 0;    ///< number of edits that the scene's own cracks made
+  std::size_t first_topology = 0;         ///< number of edits that the scene's own cracks made
   std::vector<double> advance_time = {};  ///< s, of the haptic clock, per advance of the session
   /// Of the mesh at first, then chained with every edit made or taken back.
   std::uint64_t fingerprint = 0;
