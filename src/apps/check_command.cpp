@@ -2,10 +2,10 @@
 
 #include "apps/model_text.h"
 #include "apps/scene_options.h"
-#include "apps/tear_start.h"
 #include "result/summary.h"
 #include "scene/problem.h"
 #include "scene/tear_problem.h"
+#include "session/start.h"
 
 namespace rhexis::apps {
 namespace {
@@ -51,7 +51,7 @@ int check_tear(const scene::Scene& scene, const std::string& name, const Common&
   if (!built) return report(built.error());
   const scene::TearProblem& problem = *built;
   log_remarks(problem.notes, problem.warnings);
-  const Expected<TearStart> start = start_tear(problem);
+  const Expected<session::TearStart> start = session::start_tear(problem);
   if (!start) return report(start.error());
   log_remarks({}, start->warnings);
   double seconds = 0.0;

@@ -6,9 +6,9 @@
 #include "apps/progress.h"
 #include "apps/scene_options.h"
 #include "apps/tear_output.h"
-#include "apps/tear_start.h"
 #include "base/clock.h"
 #include "scene/tear_problem.h"
+#include "session/start.h"
 #include "session/tear_session.h"
 
 namespace rhexis::apps {
@@ -82,7 +82,7 @@ int tear(const SceneOptions& options, const Common& common) {
   const scene::TearProblem& problem = *built;
   log_remarks(problem.notes, problem.warnings);
   const double read_seconds = watch.seconds();
-  Expected<TearStart> start = start_tear(problem);
+  Expected<session::TearStart> start = session::start_tear(problem);
   if (!start) return report(start.error());
   log_remarks({}, start->warnings);
   TearSession& tear = *start->tear;

@@ -116,7 +116,7 @@ std::string title_of(const Scene& scene) {
   return scene.title.empty() ? fs::path(scene.file).stem().string() : scene.title;
 }
 
-Expected<Scene> read_scene(const fs::path& path, const std::vector<std::string>& overrides) {
+Expected<std::string> read_scene_text(const fs::path& path) {
   const std::string name = path.string();
   std::error_code code;
   const fs::file_status status = fs::status(path, code);
@@ -129,7 +129,13 @@ Expected<Scene> read_scene(const fs::path& path, const std::vector<std::string>&
   std::ostringstream text;
   text << stream.rdbuf();
   if (!stream.is_open() || stream.bad()) return fail("cannot be read", "check its permissions", name);
-  return parse_scene(text.str(), name, overrides);
+  return text.str();
+}
+
+Expected<Scene> read_scene(const fs::path& path, const std::vector<std::string>& overrides) {
+  const Expected<std::string> text = read_scene_text(path);
+  if (!text) return fail(text.error());
+  return parse_scene(*text, path.string(), overrides);
 }
 
 }  // namespace rhexis::scene

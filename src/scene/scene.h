@@ -151,6 +151,8 @@ struct Scene {
 /// The scene's title; its file's name where it has none.
 [[nodiscard]] std::string title_of(const Scene& scene);
 
+/// The bytes of a scene's file. Errors: none, or too large.
+[[nodiscard]] Expected<std::string> read_scene_text(const std::filesystem::path& path);
 /// Reads and validates; `overrides` are the arguments of `--set`, applied in order. Errors name FILE:LINE, or the
 /// override.
 [[nodiscard]] Expected<Scene> read_scene(const std::filesystem::path& path,

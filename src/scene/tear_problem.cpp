@@ -7,22 +7,48 @@
 namespace rhexis::scene {
 namespace {
 
-/// What can be seen without the mesh.
-Expected<void> check_sections(const Scene& scene) {
+std::string model_name(const Scene& scene) {
+  return in_quotes(model::kModelNames[static_cast<std::size_t>(scene.model.kind)]);
+}
+
+/// What a script needs, as far as it can be seen without the mesh.
+Expected<void> check_script(const Scene& scene) {
   if (!scene.fracture)
     return fail("the scene does not say when the body tears", "add a [fracture] with 'strength' or 'toughness'",
                 scene.file);
   if (scene.pulls.empty()) return fail("nothing pulls at the body", "add a [[pull]]", scene.file);
   if (scene.model.kind != model::ModelKind::linear)
-    return scene.model.kind_place.fail(
-        fmt::format("a body with model {} cannot be torn yet",
-                    in_quotes(model::kModelNames[static_cast<std::size_t>(scene.model.kind)])),
-        "kind = \"linear\"");
+    return scene.model.kind_place.fail(fmt::format("a body with model {} cannot be torn yet", model_name(scene)),
+                                       "kind = \"linear\"");
   if (!scene.pressures.empty())
     return scene.pressures.front().faces.place.fail("a pressure follows the surface, which the linear model cannot",
                                                     "a [[traction]] in a fixed direction");
-  if (scene.interaction.response == "recorded")
-    return scene.interaction.place->fail("response = \"recorded\" is not there yet", "response = \"exact\"");
+  return {};
+}
+
+/// What a hand does without, in words.
+void warn_hand(const Scene& scene, std::vector<std::string>& warnings) {
+  const auto warn = [&](const Place& place, const std::string& what) {
+    warnings.push_back(place.fail(what).value().message());
+  };
+  if (!scene.fracture) warnings.push_back(scene.file + ": the body bends and does not tear: there is no [fracture]");
+  if (scene.model.kind != model::ModelKind::linear)
+    warn(scene.model.kind_place,
+         fmt::format("model {} is not live yet: the body is opened as 'linear'", model_name(scene)));
+  for (const PressureSettings& pressure : scene.pressures)
+    warn(pressure.faces.place, "the pressure acts on the surface as it was at rest: the linear model does not turn it");
+}
+
+/// force += the pressures (N) on the undeformed surface.
+Expected<void> add_pressures_at_rest(const Scene& scene, const Body& body, const model::DisplacementSpace& space,
+                                     VectorX& force) {
+  const VectorX rest = VectorX::Zero(force.size());
+  for (const PressureSettings& pressure : scene.pressures) {
+    const Expected<std::vector<mesh::TetFace>> faces = faces_of(body, pressure.faces);
+    if (!faces) return fail(faces.error());
+    model::add_pressure_force(model::make_follower_pressure(body.mesh, space, *faces, pressure.value, {}), space, rest,
+                              1.0, force);
+  }
   return {};
 }
 
@@ -30,18 +56,25 @@ Expected<void> check_sections(const Scene& scene) {
 
 bool is_for_tearing(const Scene& scene) { return scene.fracture.has_value() && !scene.pulls.empty(); }
 
-Expected<TearProblem> build_tear_problem(const Scene& scene) {
-  if (Expected<void> done = check_sections(scene); !done) return fail(std::move(done.error()));
+Expected<TearProblem> build_tear_problem(const Scene& scene, Puller puller) {
   TearProblem problem;
+  problem.warnings = scene.warnings;
+  if (puller == Puller::hand) {
+    warn_hand(scene, problem.warnings);
+  } else if (Expected<void> done = check_script(scene); !done) {
+    return fail(std::move(done.error()));
+  }
+  if (scene.interaction.response == "recorded")
+    return scene.interaction.place->fail("response = \"recorded\" is not there yet", "response = \"exact\"");
   problem.title = title_of(scene);
   problem.body.elastic = scene.material.elastic;
   problem.body.density = scene.material.density;
   problem.body.gravity = scene.gravity;
-  problem.fracture = *scene.fracture;
+  problem.tears = scene.fracture.has_value();
+  if (problem.tears) problem.fracture = *scene.fracture;
   problem.cracks = scene.cracks;
   problem.interaction = scene.interaction;
   problem.pulls = scene.pulls;
-  problem.warnings = scene.warnings;
   problem.notes = scene.notes;
 
   Expected<Body> body = make_body(scene, problem.notes);
@@ -52,6 +85,8 @@ Expected<TearProblem> build_tear_problem(const Scene& scene) {
   problem.body.supports = std::move(*supports);
   problem.body.dead_force = VectorX::Zero(static_cast<Eigen::Index>(space.dof_count()));
   if (Expected<void> done = add_tractions(scene, *body, space, problem.body.dead_force); !done)
+    return fail(std::move(done.error()));
+  if (Expected<void> done = add_pressures_at_rest(scene, *body, space, problem.body.dead_force); !done)
     return fail(std::move(done.error()));
   if (!(scene.material.density * scene.gravity).allFinite())
     return fail("the weight is too large for a computer's numbers", "a smaller density or gravity", scene.file);

@@ -17,6 +17,7 @@ struct TearProblem {
   mesh::TetMesh mesh;          ///< with the scene's sets
   response::ElasticBody body;  ///< nodes that no tet has are held
   FractureSettings fracture;
+  bool tears = true;  ///< false: the scene does not say when, and `fracture` is empty
   std::vector<CrackSettings> cracks;
   InteractionSettings interaction;
   std::vector<PullSettings> pulls;
@@ -27,8 +28,14 @@ struct TearProblem {
 /// What makes a scene one for `rhexis tear`: it says when the body tears, and pulls at it.
 [[nodiscard]] bool is_for_tearing(const Scene& scene);
 
-/// Reads or generates the mesh and holds the scene against it. Errors beside those of build_problem: no `[fracture]`,
-/// no `[[pull]]`, a model other than `linear`, a pressure, a response that is not there.
-[[nodiscard]] Expected<TearProblem> build_tear_problem(const Scene& scene);
+/// Who asks. script: the scene alone says what happens, so that it has to say all. hand: someone holds the body, and a
+/// scene made for `rhexis solve` opens too: without `[[pull]]` nothing is scripted, without `[fracture]` it bends and
+/// does not tear, another model becomes `linear`, and a pressure acts on the surface as it was at rest; warnings say
+/// so.
+enum class Puller { script, hand };
+
+/// Reads or generates the mesh and holds the scene against it. Errors beside those of build_problem: a response that is
+/// not there; for a script also no `[fracture]`, no `[[pull]]`, a model other than `linear`, a pressure.
+[[nodiscard]] Expected<TearProblem> build_tear_problem(const Scene& scene, Puller puller = Puller::script);
 
 }  // namespace rhexis::scene

@@ -26,6 +26,12 @@ TickReport TearSession::tick(const Vec3& hand, const Observer& observer) {
   ++ticks_;
   TickReport report;
   hand_.move(hand);
+  if (settings_.tears) tear(report, observer);
+  report.force = hand_.force();
+  return report;
+}
+
+void TearSession::tear(TickReport& report, const Observer& observer) {
   solve_local_objects();
   bool tears = true;
   while (tears && report.advances < kMostAdvancesPerTick && report.trouble.empty()) {
@@ -36,8 +42,6 @@ TickReport TearSession::tick(const Vec3& hand, const Observer& observer) {
     }
     if (local_.empty() && report.trouble.empty()) tears = start_crack(report, observer);
   }
-  report.force = hand_.force();
-  return report;
 }
 
 TickReport TearSession::impose(std::size_t crack, const Vec3& direction, double length, const Observer& observer) {

@@ -63,6 +63,8 @@ class TearSession {
   /// One per crack that still runs.
   [[nodiscard]] const std::vector<fracture::LocalObject>& local_objects() const { return local_; }
   [[nodiscard]] const std::vector<AdvanceRecord>& advances() const { return advances_; }
+  /// Per node, copies too: a support gives some component of its displacement.
+  [[nodiscard]] const std::vector<std::uint8_t>& supported() const { return supported_; }
   [[nodiscard]] int pieces() const { return static_cast<int>(pieces_.count()); }
   [[nodiscard]] double mean_edge() const { return surroundings_.mean_edge(); }  ///< m, of the intact body
   [[nodiscard]] double crack_area() const;                                      ///< m^2
@@ -87,6 +89,7 @@ class TearSession {
     double seconds = 0.0;                                       ///< spent on planning it
     AdvanceRecord record;                                       ///< filled in as far as is known
   };
+  void tear(TickReport& report, const Observer& observer);
   [[nodiscard]] std::optional<Judged> judge(std::size_t crack) const;
   bool run_on(std::size_t crack, Judged judged, TickReport& report, const Observer& observer);
   bool start_crack(TickReport& report, const Observer& observer);

@@ -15,6 +15,7 @@ namespace rhexis::session {
 
 struct TearSettings {
   response::ElasticBody body;
+  bool tears = true;      ///< false: it bends; what follows is not read, and its first cracks stay as they are
   std::string criterion;  ///< of fracture::kCriterionNames; empty: "maximum-principal" for a plate, else "maximum-hoop"
   std::optional<double> strength;   ///< Pa; this or toughness
   std::optional<double> toughness;  ///< N/m

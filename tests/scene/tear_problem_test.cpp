@@ -92,6 +92,52 @@ TEST(TearProblem, SaysWhatIsMissingOrCannotBe) {
   }
 }
 
+Expected<TearProblem> build_for_hand(const std::string& text) {
+  const Expected<Scene> scene = parse_scene(text, "s.toml");
+  EXPECT_TRUE(scene.has_value()) << scene.error().message();
+  return build_tear_problem(*scene, Puller::hand);
+}
+
+TEST(TearProblem, AHandOpensWhatAScriptCannotAndSaysWhatIsOtherThanWritten) {
+  const std::string no_fracture = replaced(kPlate, "[fracture]\nstrength = 0.4e6\n", "");
+  const std::string nothing = replaced(no_fracture, "[[pull]]\nat = [0.10, 0.0, 0.005]\nby = [-0.12, 0.0, 0.0]\n", "");
+  const Expected<TearProblem> bends = build_for_hand(replaced(nothing, "\"linear\"", "\"corotated\""));
+  ASSERT_TRUE(bends.has_value()) << bends.error().message();
+  EXPECT_FALSE(bends->tears);
+  EXPECT_TRUE(bends->pulls.empty());
+  EXPECT_THAT(bends->warnings,
+              testing::ElementsAre("s.toml: the body bends and does not tear: there is no [fracture]",
+                                   "s.toml:11: model 'corotated' is not live yet: the body is opened as 'linear'"));
+  const Expected<TearProblem> tears = build_for_hand(kPlate);
+  ASSERT_TRUE(tears.has_value()) << tears.error().message();
+  EXPECT_TRUE(tears->tears);
+  EXPECT_TRUE(tears->warnings.empty());
+}
+
+TEST(TearProblem, APressurePushesOnTheSurfaceAtRestForAHand) {
+  const Expected<TearProblem> problem =
+      build_for_hand(replaced(kPlate, "[fracture]", "[[pressure]]\nside = \"-x\"\nvalue = 10.0\n[fracture]"));
+  ASSERT_TRUE(problem.has_value()) << problem.error().message();
+  EXPECT_THAT(problem->warnings,
+              testing::ElementsAre(testing::HasSubstr("s.toml:21: the pressure acts on the surface")));
+  Vec3 sum = Vec3::Zero();
+  for (Eigen::Index node = 0; node < problem->body.dead_force.size() / 3; ++node)
+    sum += problem->body.dead_force.segment<3>(3 * node);
+  // The traction, and 10 Pa against the outward normal -x of 0.24 m x 0.01 m.
+  EXPECT_LT((sum - Vec3(-0.5 + 0.024, 0.0, 0.0)).norm(), 1e-14) << sum.transpose();
+}
+
+TEST(TearProblem, AHandIsHeldToWhatIsWrongForAll) {
+  const Expected<TearProblem> free =
+      build_for_hand(replaced(kPlate, "[[support]]\nset = \"+x\"\nx = 0.0\ny = 0.0\nz = 0.0\n", ""));
+  ASSERT_FALSE(free.has_value());
+  EXPECT_EQ(free.error().message(), "s.toml: nothing holds the body (add a [[support]])");
+  const Expected<TearProblem> recorded = build_for_hand(
+      replaced(kPlate, "[[crack]]", "[interaction]\nresponse = \"recorded\"\nrecord = \"a.h5\"\n[[crack]]"));
+  ASSERT_FALSE(recorded.has_value());
+  EXPECT_EQ(recorded.error().message(), "s.toml:22: response = \"recorded\" is not there yet (response = \"exact\")");
+}
+
 TEST(TearProblem, PushAndBlendAreRead) {
   const Expected<TearProblem> problem =
       build(replaced(replaced(kPlate, "[[crack]]", "[interaction]\ncontact = \"blend\"\n[[crack]]"), "[[pull]]",

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <random>
 #include <string>
 #include <vector>
@@ -38,6 +39,14 @@ class RandomPull {
  public:
   explicit RandomPull(std::uint64_t seed) : seed_(seed), random_(seed) {}
 
+  /// What else watches the pull: called when the body is there, and after each edit that it takes or gives back.
+  struct Watch {
+    std::function<void(const session::TearSession&)> begins = [](const session::TearSession&) {};
+    std::function<void(const session::TearSession&)> edited = [](const session::TearSession&) {};
+    std::function<void(const session::TearSession&)> undone = [](const session::TearSession&) {};
+  };
+  void set_watch(Watch watch) { watch_ = std::move(watch); }
+
   /// `check_share`: part of the topologies that are held against the oracle.
   void run(PullTally& tally, double check_share) {
     make_body();
@@ -48,9 +57,13 @@ class RandomPull {
     const std::size_t start = tear_->body().topology();
     const std::uint64_t bits = bits_of(tear_->body());
     ++tally.pulls;
+    watch_.begins(*tear_);
     pull(tally, check_share);
     count_hinges(tally);
-    while (tear_->body().topology() > start) ASSERT_TRUE(tear_->undo()) << seed_;
+    while (tear_->body().topology() > start) {
+      ASSERT_TRUE(tear_->undo()) << seed_;
+      watch_.undone(*tear_);
+    }
     EXPECT_EQ(bits_of(tear_->body()), bits) << "seed " << seed_;
   }
 
@@ -153,6 +166,7 @@ class RandomPull {
       const session::TickReport report = tear_->tick(hand, [&](const session::AdvanceRecord& advance) {
         ++advances;
         check_edit(tally);
+        watch_.edited(*tear_);
         EXPECT_TRUE(advance.force_after.allFinite()) << "seed " << seed_;
         if (tear_->hand().holds() && uniform(0, 1) < check_share) check_response(stiffness, way, tally);
       });
@@ -229,6 +243,7 @@ class RandomPull {
     return hash;
   }
 
+  Watch watch_;
   std::uint64_t seed_;
   std::mt19937_64 random_;
   mesh::TetMesh mesh_;

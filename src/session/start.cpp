@@ -1,12 +1,13 @@
-#include "apps/tear_start.h"
+#include "session/start.h"
 
-namespace rhexis::apps {
+namespace rhexis::session {
 namespace {
 
-session::TearSettings settings_of(const scene::TearProblem& problem) {
+TearSettings settings_of(const scene::TearProblem& problem) {
   const scene::FractureSettings& fracture = problem.fracture;
   return {
       .body = problem.body,
+      .tears = problem.tears,
       .criterion = fracture.criterion.value_or(""),
       .strength = fracture.strength,
       .toughness = fracture.toughness,
@@ -17,8 +18,8 @@ session::TearSettings settings_of(const scene::TearProblem& problem) {
       .contact = problem.interaction.blend_contact ? response::ContactRule::blend : response::ContactRule::consistent};
 }
 
-std::vector<session::CrackLine> cracks_of(const scene::TearProblem& problem) {
-  std::vector<session::CrackLine> lines;
+std::vector<CrackLine> cracks_of(const scene::TearProblem& problem) {
+  std::vector<CrackLine> lines;
   for (const scene::CrackSettings& crack : problem.cracks)
     lines.push_back({crack.from, crack.to, crack.through, crack.place.file ? *crack.place.file : "", crack.place.line});
   return lines;
@@ -30,14 +31,14 @@ std::string placed(const scene::Place& place, const std::string& text) { return 
 
 Expected<TearStart> start_tear(const scene::TearProblem& problem) {
   TearStart start;
-  Expected<std::unique_ptr<session::TearSession>> made =
-      session::TearSession::make(problem.mesh, settings_of(problem), cracks_of(problem));
+  Expected<std::unique_ptr<TearSession>> made =
+      TearSession::make(problem.mesh, settings_of(problem), cracks_of(problem));
   if (!made) {
     const scene::Place& place = problem.fracture.place;
     return fail(made.error().at(place.file ? *place.file : "", place.line));
   }
   start.tear = std::move(*made);
-  session::TearSession& tear = *start.tear;
+  TearSession& tear = *start.tear;
 
   std::size_t frozen = 0;
   for (const mesh::MeshEdit& edit : tear.body().history()) frozen += edit.frozen.size();
@@ -59,4 +60,4 @@ Expected<TearStart> start_tear(const scene::TearProblem& problem) {
   return start;
 }
 
-}  // namespace rhexis::apps
+}  // namespace rhexis::session

@@ -1,6 +1,7 @@
 #pragma once
 
-/// From a scene to a session that is ready to be pulled at: what `rhexis tear` begins with and `rhexis check` tries.
+/// From a scene to a session that is ready to be pulled at: what `rhexis tear` and `rhexis play`
+/// begin with and `rhexis check` tries.
 
 #include <memory>
 #include <string>
@@ -9,14 +10,14 @@
 #include "scene/tear_problem.h"
 #include "session/tear_session.h"
 
-namespace rhexis::apps {
+namespace rhexis::session {
 
 struct TearStart {
-  std::unique_ptr<session::TearSession> tear;
+  std::unique_ptr<TearSession> tear;
   std::vector<std::string> warnings;  ///< one line each, placed
 };
 
 /// Cuts the first cracks, factors, and takes hold of the point of every pull once. Errors are placed.
 [[nodiscard]] Expected<TearStart> start_tear(const scene::TearProblem& problem);
 
-}  // namespace rhexis::apps
+}  // namespace rhexis::session

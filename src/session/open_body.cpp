@@ -1,0 +1,85 @@
+#include "session/open_body.h"
+
+#include <array>
+
+#include "base/hash.h"
+#include "base/parallel.h"
+
+namespace rhexis::session {
+namespace {
+
+template <class T>
+void add(Hash& hash, const std::vector<T>& values) {
+  const std::array<std::uint64_t, 1> count{values.size()};
+  hash.add(std::span<const std::uint64_t>(count));
+  hash.add(std::span<const T>(values));
+}
+
+void add(Hash& hash, const Vec3& v) { hash.add(std::span<const double>(v.data(), 3)); }
+
+/// Positions and tets, and the supports, which the loads' bits follow from.
+std::uint64_t fingerprint_of(const scene::TearProblem& problem) {
+  Hash hash;
+  for (const Vec3& position : problem.mesh.nodes) add(hash, position);
+  add(hash, problem.mesh.tets);
+  for (const model::PrescribedDof& support : problem.body.supports) {
+    hash.add(std::span<const std::int32_t>(&support.dof, 1));
+    hash.add(std::span<const double>(&support.value, 1));
+  }
+  return hash.value();
+}
+
+Expected<std::unique_ptr<OpenBody>> start_body(SceneChoice scene, scene::TearProblem problem, std::string model) {
+  Expected<TearStart> start = start_tear(problem);
+  if (!start) return fail(std::move(start.error()));
+  SurfaceTracker surface(start->tear->body());
+  const std::uint64_t intact = fingerprint_of(problem);
+  auto body = std::make_unique<OpenBody>(OpenBody{.scene = std::move(scene),
+                                                  .problem = std::move(problem),
+                                                  .model = std::move(model),
+                                                  .start = std::move(*start),
+                                                  .surface = std::move(surface)});
+  const TearSession& tear = body->tear();
+  body->first_topology = tear.body().topology();
+  body->advance_time.assign(tear.advances().size(), 0.0);
+  body->fingerprint = intact;
+  for (const mesh::MeshEdit& edit : tear.body().history())
+    body->fingerprint = chained(body->fingerprint, edit, /*taken_back=*/false);
+  return body;
+}
+
+}  // namespace
+
+Expected<std::unique_ptr<OpenBody>> open_body(SceneChoice choice) {
+  const Expected<scene::Scene> scene = scene::parse_scene(choice.text, choice.file, choice.overrides);
+  if (!scene) return fail(scene.error());
+  Expected<scene::TearProblem> problem = scene::build_tear_problem(*scene, scene::Puller::hand);
+  if (!problem) return fail(std::move(problem.error()));
+  set_thread_count(scene->solver.threads);
+  return start_body(std::move(choice), std::move(*problem),
+                    std::string(model::kModelNames[static_cast<std::size_t>(scene->model.kind)]));
+}
+
+Expected<std::unique_ptr<OpenBody>> reopen(const OpenBody& body) {
+  return start_body(body.scene, body.problem, body.model);
+}
+
+std::uint64_t chained(std::uint64_t fingerprint, const mesh::MeshEdit& edit, bool taken_back) {
+  Hash hash;
+  const std::array<std::uint64_t, 2> before{fingerprint, taken_back ? 1U : 0U};
+  hash.add(std::span<const std::uint64_t>(before));
+  add(hash, edit.removed);
+  add(hash, edit.frozen);
+  for (const mesh::MovedNode& move : edit.moved) {
+    hash.add(std::span<const NodeId>(&move.node, 1));
+    add(hash, move.to);
+  }
+  add(hash, edit.copied);
+  for (const mesh::RewiredTet& change : edit.rewired) {
+    hash.add(std::span<const TetId>(&change.tet, 1));
+    hash.add(std::span<const NodeId>(change.after));
+  }
+  return hash.value();
+}
+
+}  // namespace rhexis::session

@@ -1,0 +1,45 @@
+#pragma once
+
+/// A scene that has been opened to be held: its text, what was made of it, and its surface. What a reset makes anew.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/tear_problem.h"
+#include "session/start.h"
+#include "session/surface_tracker.h"
+
+namespace rhexis::session {
+
+/// What decides a body to the bit, beside the mesh file that it may name.
+struct SceneChoice {
+  std::string file;                    ///< as it is named to clients
+  std::string text;                    ///< TOML
+  std::vector<std::string> overrides;  ///< "key=value", in the order of --set
+};
+
+struct OpenBody {
+  SceneChoice scene;
+  scene::TearProblem problem;
+  std::string model;  ///< that the scene names
+  TearStart start;
+  SurfaceTracker surface;
+  std::size_t first_topology = 0;         ///< number of edits that the scene's own cracks made
+  std::vector<double> advance_time = {};  ///< s, of the haptic clock, per advance of the session
+  /// Of the mesh at first, then chained with every edit made or taken back.
+  std::uint64_t fingerprint = 0;
+
+  [[nodiscard]] TearSession& tear() const { return *start.tear; }
+};
+
+/// Errors are those of the scene, its mesh and its first cracks.
+[[nodiscard]] Expected<std::unique_ptr<OpenBody>> open_body(SceneChoice scene);
+/// The same body from the start again, without reading anything.
+[[nodiscard]] Expected<std::unique_ptr<OpenBody>> reopen(const OpenBody& body);
+
+/// The fingerprint after an edit that the body took, or gave back.
+[[nodiscard]] std::uint64_t chained(std::uint64_t fingerprint, const mesh::MeshEdit& edit, bool taken_back);
+
+}  // namespace rhexis::session

@@ -1,0 +1,47 @@
+#pragma once
+
+/// The scene's pulls as a live interaction goes through them: one after the other, on the clock of the haptic loop,
+/// which stands still while the interaction is paused.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "scene/scene.h"
+#include "session/scripted_pull.h"
+
+namespace rhexis::session {
+
+class Script {
+ public:
+  enum class Does { nothing, grasps, lets_go };
+
+  void begin() {
+    on_ = true;
+    next_ = 0;
+    pulling_ = false;
+  }
+  void end() { *this = Script(); }
+  [[nodiscard]] bool is_on() const { return on_; }
+  /// The pull that is made, or will be next.
+  [[nodiscard]] std::size_t pull() const { return next_; }
+
+  /// At tick `now` of the haptic loop, `passed` ticks after the last call. grasps: pull() begins, and the hand has to
+  /// take hold of its point; lets_go: it is over, and the next one begins with another call, or none is left and the
+  /// script is off.
+  Does step(const std::vector<scene::PullSettings>& pulls, std::uint64_t now, std::uint64_t passed, bool runs);
+  /// What the device has to do after the last step.
+  [[nodiscard]] const ScriptedPull& orders() const { return orders_; }
+
+ private:
+  bool on_ = false;
+  bool pulling_ = false;
+  std::size_t next_ = 0;
+  std::uint64_t taken_ = 0;  ///< ticks of the present pull
+  ScriptedPull orders_;
+};
+
+/// s, of all pulls and their holds.
+[[nodiscard]] double script_seconds(const std::vector<scene::PullSettings>& pulls);
+
+}  // namespace rhexis::session

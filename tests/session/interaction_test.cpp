@@ -1,0 +1,158 @@
+#include "session/interaction.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/session/live_case.h"
+
+namespace rhexis::session {
+namespace {
+
+using test::payload;
+
+/// Keeps what it hears.
+struct Heard final : InteractionListener {
+  void has_body(bool anew) override { bodies += anew ? 1 : 0; }
+  void has_torn(const AdvanceRecord& advance, const SurfaceChange& /*change*/) override {
+    topologies.push_back(advance.topology);
+  }
+  void says(wire::Level /*level*/, const std::string& text) override { texts.push_back(text); }
+  int bodies = 0;
+  std::vector<std::size_t> topologies;
+  std::vector<std::string> texts;
+};
+
+struct Case {
+  explicit Case(std::string text = test::kLivePlate)
+      : interaction(
+            open(std::move(text)), [](const std::string&) { return fail("none"); }, heard) {}
+  static std::unique_ptr<OpenBody> open(std::string text) {
+    Expected<std::unique_ptr<OpenBody>> body = open_body({.file = "s.toml", .text = std::move(text), .overrides = {}});
+    EXPECT_TRUE(body.has_value()) << body.error().message();
+    return std::move(*body);
+  }
+  /// A step in which the hand is where a rigid device without delay has it.
+  StepOutcome step() {
+    haptics::HandState hand;
+    hand.tick = ++tick;
+    hand.grasp = interaction.law().grasp;
+    const bool holds = (interaction.law().flags & response::ForceSnapshot::is_held) != 0;
+    hand.flags = holds ? haptics::HandState::holds : 0U;
+    const Vec3 at = interaction.orders().on != 0 ? interaction.orders().at(tick) : by;
+    hand.hand = {at[0], at[1], at[2]};
+    return interaction.step(hand, true);
+  }
+  /// Of the whole script.
+  std::vector<StepOutcome> run_script() {
+    wire::ScriptT on;
+    on.on = true;
+    interaction.carry_out(payload(on));
+    std::vector<StepOutcome> out;
+    for (int k = 0; k < 600; ++k) out.push_back(step());
+    return out;
+  }
+
+  Heard heard;
+  Interaction interaction;
+  std::uint64_t tick = 0;
+  Vec3 by = Vec3::Zero();
+};
+
+TEST(Interaction, AScriptIsTheOneOfTheCommandTear) {
+  Case live;
+  live.run_script();
+  EXPECT_FALSE(live.interaction.is_scripted());
+  EXPECT_THAT(live.heard.texts, testing::Contains("the script has come to its end"));
+
+  // The loop of `rhexis tear`: 500 ticks, each held against the other's tears.
+  const auto body = Case::open(test::kLivePlate);
+  TearSession& tear = body->tear();
+  ASSERT_TRUE(tear.grasp(body->problem.pulls[0].at).has_value());
+  for (int k = 1; k <= 500; ++k) tear.tick(body->problem.pulls[0].by * (k / 500.0));
+  ASSERT_EQ(live.interaction.tear().advances().size(), tear.advances().size());
+  ASSERT_GT(tear.advances().size(), 3U);
+  for (std::size_t k = 0; k < tear.advances().size(); ++k) {
+    EXPECT_EQ(live.interaction.tear().advances()[k].force_before, tear.advances()[k].force_before) << k;
+    EXPECT_EQ(live.interaction.tear().advances()[k].length, tear.advances()[k].length) << k;
+  }
+}
+
+TEST(Interaction, TheSameInputsGiveTheSameBits) {
+  Case one;
+  Case other;
+  const std::vector<StepOutcome> a = one.run_script();
+  const std::vector<StepOutcome> b = other.run_script();
+  int tears = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    ASSERT_EQ(a[k].law, b[k].law) << k;
+    ASSERT_EQ(a[k].fingerprint, b[k].fingerprint) << k;
+    ASSERT_EQ(a[k].force, b[k].force) << k;
+    tears += a[k].advances;
+  }
+  EXPECT_GT(tears, 3);
+  EXPECT_NE(a.front().fingerprint, a.back().fingerprint);
+  EXPECT_NE(a[100].law, a[101].law);  // each is another publication
+}
+
+TEST(Interaction, AnUndoneTearIsAnotherBodyThanTheOneBefore) {
+  Case live;
+  const std::uint64_t intact = live.step().fingerprint;
+  live.run_script();
+  const std::size_t tears = live.heard.topologies.size();
+  ASSERT_GT(tears, 0U);
+  for (std::size_t k = 0; k < tears; ++k) live.interaction.carry_out(payload(wire::UndoT()));
+  EXPECT_TRUE(live.heard.texts.empty() || live.heard.texts.back() != "there is no tear to take back");
+  EXPECT_NE(live.step().fingerprint, intact);  // it is the way that counts, not where it leads
+  live.interaction.carry_out(payload(wire::UndoT()));
+  EXPECT_EQ(live.heard.texts.back(), "there is no tear to take back");
+  live.interaction.carry_out(payload(wire::ResetT()));
+  EXPECT_EQ(live.step().fingerprint, intact);
+  EXPECT_EQ(live.heard.bodies, 1);
+}
+
+TEST(Interaction, WithoutFractureTheBodyBendsAndNeverTears) {
+  std::string text = test::kLivePlate;
+  const std::string fracture = "[fracture]\ncriterion = \"maximum-principal\"\nstrength = 0.4e6\n";
+  text.erase(text.find(fracture), fracture.size());
+  Case live(text);
+  const std::vector<StepOutcome> steps = live.run_script();
+  EXPECT_TRUE(live.heard.topologies.empty());
+  // It goes on where the other has torn long ago: in line with the way.
+  const Vec3 early = steps[100].force / 100.0;
+  EXPECT_GT(early.norm(), 0.0);
+  EXPECT_LT((steps[450].force / 450.0 - early).norm(), 1e-9 * early.norm());
+}
+
+TEST(Interaction, AHandThatFollowsAnotherHoldIsNotFollowed) {
+  Case live;
+  wire::GraspT grasp;
+  grasp.weights = std::make_unique<wire::Vec3>(1.0, 0.0, 0.0);
+  const SurfaceTracker& surface = live.interaction.body().surface;
+  const mesh::TetMesh& mesh = live.interaction.tear().body().mesh();
+  while (mesh.node(surface.nodes()[surface.faces()[grasp.face][0]]).x() > 0.05) ++grasp.face;
+  live.interaction.carry_out(payload(std::move(grasp)));
+  live.step();
+  ASSERT_TRUE(live.interaction.tear().hand().holds());
+  haptics::HandState old;
+  old.tick = ++live.tick;
+  old.grasp = live.interaction.law().grasp + 1;
+  old.flags = haptics::HandState::holds;
+  old.hand = {-0.01, 0.0, 0.0};
+  EXPECT_EQ(live.interaction.step(old, true).force, Vec3(Vec3::Zero()));
+  live.by = Vec3(-0.001, 0.0, 0.0);
+  EXPECT_GT(live.step().force.norm(), 0.0);
+}
+
+TEST(Interaction, WhatTheHandTearsOffIsLetGoAndSaid) {
+  std::string text = test::kLivePlate;
+  text.replace(text.find("strength = 0.4e6"), 16, "strength = 2.0e4");
+  text.replace(text.find("to = [0.12, 0.06"), 16, "to = [0.12, 0.20");
+  Case live(text);
+  live.run_script();
+  EXPECT_THAT(live.heard.texts, testing::Contains(testing::HasSubstr("the hand has let go")));
+  EXPECT_NE(live.interaction.law().flags & response::ForceSnapshot::torn_off, 0U);
+  EXPECT_FALSE(live.interaction.is_scripted());
+  EXPECT_THAT(live.heard.texts, testing::Contains(testing::HasSubstr("pieces")));
+}
+
+}  // namespace
+}  // namespace rhexis::session
