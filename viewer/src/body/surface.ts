@@ -33,7 +33,7 @@ export class Surface {
   held = new Uint32Array(0);
   fronts: readonly Front[] = [];
   /** Of the field shown, one a vertex; empty where none is shown. */
-  values = new Float32Array(0);
+  values: Float32Array = new Float32Array(0);
   /** Counts changes of what is connected with what, of reference positions and of marks. */
   shapeVersion = 0;
   /** Counts changes of positions and values. */

@@ -5,7 +5,7 @@ import type { Command, ServerFrame } from "./messages";
 
 export interface Listener {
   frame(frame: ServerFrame): void;
-  link(link: Link): void;
+  linked(link: Link): void;
   /** A frame could not be read, in words. */
   garbled(why: string): void;
 }
@@ -39,7 +39,7 @@ export class LiveSocket {
   }
 
   start(): void {
-    this.listener.link(this.link);
+    this.listener.linked(this.link);
     this.connect();
   }
 
@@ -117,6 +117,6 @@ export class LiveSocket {
       this.nextAttempt = performance.now() + link.seconds * 1000;
       this.timer = setTimeout(() => this.happen({ kind: "waited" }), link.seconds * 1000);
     }
-    this.listener.link(link);
+    this.listener.linked(link);
   }
 }
