@@ -14,7 +14,7 @@ import { StatusBar } from "./panel/status_bar";
 import { Theme } from "./panel/theme";
 import { TimelineBar } from "./panel/timeline_bar";
 import { Transport } from "./panel/transport";
-import { describe, kFirstLink, liveAddress, type Link } from "./protocol/connection";
+import { describe, describeWait, kFirstLink, liveAddress, type Link } from "./protocol/connection";
 import type { Command, ServerFrame } from "./protocol/messages";
 import { LiveSocket, type Listener } from "./protocol/socket";
 import { kFields } from "./colour/scale";
@@ -38,7 +38,7 @@ export class App implements Listener {
   private readonly stage = new Stage(this.canvas, this.store);
   private readonly grip = new Grip(this.send, (wasHeld) => this.loseGrip(wasHeld));
   private readonly messages = new Messages();
-  private readonly status = new StatusBar(this.send);
+  private readonly status = new StatusBar(this.send, () => this.socket.tryNow());
   private readonly force = new ForcePanel();
   private readonly plot = new ForcePlot(byId("force-plot", HTMLDivElement));
   private readonly legend = new Legend();
@@ -168,10 +168,11 @@ export class App implements Listener {
 
   private showTroubles(): void {
     const found: Trouble[] = troubles(this.store);
-    const lost = describe(this.link, (this.socket.nextAttempt - performance.now()) / 1000);
+    const lost = describe(this.link);
+    const detail = describeWait(this.link, (this.socket.nextAttempt - performance.now()) / 1000);
     // A page that has just been opened is not in trouble yet.
     const isLate = this.link.kind !== "connecting" || this.link.wasOpen || this.link.attempt > 0;
-    if (lost !== "" && isLate) this.messages.showTroubles([{ id: "link", level: Level.error, text: lost }]);
+    if (lost !== "" && isLate) this.messages.showTroubles([{ id: "link", level: Level.error, text: lost, detail }]);
     else this.messages.showTroubles(lost === "" ? found : []);
   }
 

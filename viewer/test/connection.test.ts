@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { describe as words, follow, kFirstLink, liveAddress, type Link, type LinkEvent } from "../src/protocol/connection";
+import { describe as words, describeWait, follow, kFirstLink, liveAddress, type Link, type LinkEvent } from "../src/protocol/connection";
 
 function run(events: readonly LinkEvent[], from: Link = kFirstLink): readonly [Link, string[]] {
   const actions: string[] = [];
@@ -44,12 +44,14 @@ describe("A connection", () => {
   });
 
   it("says in words how it is", () => {
-    expect(words({ kind: "open" }, 0)).toBe("");
+    expect(words({ kind: "open" })).toBe("");
     const [lost] = run([{ kind: "opened" }, { kind: "closed", why: "nothing heard for 6 s" }]);
-    expect(words(lost, 0.4)).toBe("Connection lost: nothing heard for 6 s. Is the program still running? Next attempt in 1 s.");
+    expect(words(lost)).toBe("Connection lost: nothing heard for 6 s. Is the program still running?");
+    expect(describeWait(lost, 0.4)).toBe("Next attempt in 1 s.");
+    expect(describeWait({ kind: "open" }, 0)).toBe("");
     const [never] = run([closed]);
-    expect(words(never, 3)).toContain("No connection");
-    expect(words({ kind: "connecting", attempt: 1, wasOpen: true }, 0)).toContain("Connecting again");
+    expect(words(never)).toContain("No connection");
+    expect(words({ kind: "connecting", attempt: 1, wasOpen: true })).toContain("Connecting again");
   });
 
   it("hands the token of the page on, and nothing else", () => {

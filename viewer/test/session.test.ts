@@ -110,7 +110,7 @@ describe("Troubles", () => {
     const state = restingState(plate, 1, 0, 1);
     change(state);
     take(wire.Payload.State, state);
-    return troubles(kept).map(({ id, text }) => [id, text] as const);
+    return troubles(kept).map(({ id, text, detail }) => [id, `${text} ${detail}`.trim()] as const);
   }
 
   it("are none when all is well", () => {

@@ -56,6 +56,8 @@ export async function open(browser: Browser, url: string, look: Look = {}): Prom
   if (look.before !== undefined) await page.addInitScript(look.before);
   await page.goto(url);
   await page.waitForFunction(() => window.rhexis?.state != null);
+  // One picture later the view fits the body, and points of it are where they are said to be.
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   return { page, errors };
 }
 

@@ -24,15 +24,14 @@ declare global {
 
 const kInstall = `
   window.emulatedHeadset = new IWER.XRDevice(IWER.metaQuest3);
-  window.emulatedHeadset.installRuntime();
+  window.emulatedHeadset.installRuntime({ forceInstall: true }); // Chromium has a runtime, without a device
   window.emulatedHeadset.controllers.right.position.set(0.1, 1.2, -0.1);
 `;
 
 /** A page in a browser that believes to have a headset. */
 export function openWithHeadset(browser: Browser, url: string): Promise<{ page: Page; errors: string[] }> {
-  const entry = createRequire(import.meta.url).resolve("iwer");
-  const folder = join(entry.slice(0, entry.lastIndexOf("iwer")), "iwer");
-  const source = readFileSync(join(folder.includes("node_modules") ? folder : dirname(entry), "build/iwer.min.js"), "utf8");
+  const entry = createRequire(import.meta.url).resolve("iwer"); // iwer/lib/index.js
+  const source = readFileSync(join(dirname(entry), "../build/iwer.min.js"), "utf8");
   return open(browser, url, { before: source + kInstall });
 }
 
@@ -41,6 +40,12 @@ export async function enterHeadset(page: Page): Promise<void> {
   await page.waitForFunction(() => window.rhexis?.isInHeadset === true);
   // The controllers are there once the session has drawn.
   await page.waitForTimeout(300);
+}
+
+export async function leaveHeadset(page: Page): Promise<void> {
+  // The emulated headset lays its picture over the page, where a mouse would hit that.
+  await page.evaluate(() => document.getElementById("headset-button")?.click());
+  await page.waitForFunction(() => window.rhexis?.isInHeadset === false);
 }
 
 /** Points the right controller at a reference point of the scene from 0.35 m before it, then shifts it by `by` (m). */

@@ -48,13 +48,15 @@ export class Messages {
     for (const trouble of troubles) {
       let element = this.shown.get(trouble.id);
       if (element === undefined) {
-        element = make("p");
+        element = make("p", {}, make("span"), make("span", { ariaHidden: "true" }));
         element.dataset["trouble"] = trouble.id;
         this.shown.set(trouble.id, element);
         this.banner.append(element);
       }
       element.className = `trouble ${kLevelName[trouble.level]}`;
-      setText(element, trouble.text);
+      const [text, detail] = element.children;
+      if (text !== undefined) setText(text, trouble.text);
+      if (detail !== undefined) setText(detail, trouble.detail === "" ? "" : ` ${trouble.detail}`);
     }
   }
 

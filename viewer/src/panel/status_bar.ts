@@ -6,11 +6,13 @@ import { byId, setText } from "./dom";
 /** At the top: whether the page is connected, who has the hand. */
 export class StatusBar {
   private readonly link = byId("link-state", HTMLSpanElement);
+  private readonly retry = byId("retry-button", HTMLButtonElement);
   private readonly hand = byId("hand-state", HTMLSpanElement);
   private readonly button = byId("hand-button", HTMLButtonElement);
   private role: Role | null = null;
 
-  constructor(send: (command: Command) => void) {
+  constructor(send: (command: Command) => void, tryNow: () => void) {
+    this.retry.addEventListener("click", tryNow);
     this.button.addEventListener("click", () => send({ kind: this.role?.hand ? "giveHand" : "takeHand" }));
   }
 
@@ -18,6 +20,7 @@ export class StatusBar {
     const words: Readonly<Record<Link["kind"], string>> = { open: "Connected", connecting: "Connecting", waiting: "Not connected" };
     this.link.dataset["state"] = link.kind;
     setText(this.link, words[link.kind]);
+    this.retry.hidden = link.kind !== "waiting";
   }
 
   showRole(role: Role | null, hello: Hello | null): void {

@@ -44,8 +44,8 @@ export function follow(link: Link, event: LinkEvent): readonly [Link, LinkAction
   }
 }
 
-/** In words; empty where all is well. `left`: s until the next attempt. */
-export function describe(link: Link, left: number): string {
+/** In words; empty where all is well. */
+export function describe(link: Link): string {
   if (link.kind === "open") return "";
   if (link.kind === "connecting") return link.wasOpen ? "Connection lost. Connecting again …" : "Connecting …";
   const what = link.wasOpen ? "Connection lost" : "No connection";
@@ -53,8 +53,12 @@ export function describe(link: Link, left: number): string {
   const advice = link.wasOpen
     ? "Is the program still running?"
     : "Is the program running, and is this the address that it printed?";
-  return `${what}${why}. ${advice} Next attempt in ${Math.max(0, Math.ceil(left))} s.`;
+  return `${what}${why}. ${advice}`;
 }
+
+/** `left`: s until the next attempt. */
+export const describeWait = (link: Link, left: number): string =>
+  link.kind === "waiting" ? `Next attempt in ${Math.max(0, Math.ceil(left))} s.` : "";
 
 /** Of the WebSocket that belongs to a page at `location`, which hands on the token that it was opened with. */
 export function liveAddress(location: { readonly href: string }): string {

@@ -13,6 +13,8 @@ export interface Trouble {
   readonly id: string;
   readonly level: Level;
   readonly text: string;
+  /** What changes while it lasts: shown, but not read out again and again. */
+  readonly detail: string;
 }
 
 export interface Situation {
@@ -26,10 +28,10 @@ export interface Situation {
 export function troubles(situation: Situation): Trouble[] {
   const { hello, role, body, state } = situation;
   const found: Trouble[] = [];
-  const say = (id: string, level: Level, text: string) => found.push({ id, level, text });
+  const say: Say = (id, level, text, detail = "") => void found.push({ id, level, text, detail });
   if (state !== null) {
     judgePhysics(state, say);
-    if (state.limited && state.held) say("limited", Level.warning, limitedText(state, body));
+    if (state.limited && state.held) judgeLimit(state, body, say);
     if (state.pieces > 1)
       say("pieces", Level.warning, `The body is in ${counted(state.pieces, "piece")}. What no support holds stays where it came off.`);
   }
@@ -37,18 +39,20 @@ export function troubles(situation: Situation): Trouble[] {
   return found.sort((a, b) => b.level - a.level);
 }
 
-function judgePhysics(state: State, say: (id: string, level: Level, text: string) => void): void {
+type Say = (id: string, level: Level, text: string, detail?: string) => void;
+
+function judgePhysics(state: State, say: Say): void {
   if (state.paused || state.rates === null) return;
   const { snapshotAgeMs, physicsWorstMs } = state.rates;
   if (snapshotAgeMs > kLateLaw)
-    say("late", Level.warning, `The physics is late: the force is that of the body ${fixed(snapshotAgeMs, 0)} ms ago.`);
+    say("late", Level.warning, "The physics is late:", `the force is that of the body ${fixed(snapshotAgeMs, 0)} ms ago.`);
   else if (physicsWorstMs > kLateStep)
-    say("late", Level.warning, `The physics is late: a step took ${fixed(physicsWorstMs, 0)} ms in the last second.`);
+    say("late", Level.warning, "The physics is late:", `a step took ${fixed(physicsWorstMs, 0)} ms in the last second.`);
 }
 
-function limitedText(state: State, body: Body | null): string {
+function judgeLimit(state: State, body: Body | null, say: Say): void {
   const limit = body !== null && body.maxForce > 0 ? `${fixed(body.maxForce, 1)} N` : "its limit";
-  return `The force is cut to ${limit}: the body itself pulls with ${forceText(length(state.bodyForce))} N.`;
+  say("limited", Level.warning, `The force is cut to ${limit}:`, `the body itself pulls with ${forceText(length(state.bodyForce))} N.`);
 }
 
 function handText(role: Role): string {

@@ -25,7 +25,7 @@ export class CameraRig {
     const isFlat = extent[2] < 0.3 * Math.max(extent[0], extent[1]);
     this.yaw = isFlat ? -15 : -30;
     this.pitch = isFlat ? 52 : 18;
-    this.distance = (0.6 * this.size) / (kSlope * Math.min(1, this.aspect));
+    this.distance = (0.5 * this.size) / (kSlope * Math.min(1, this.aspect));
   }
 
   turn(right: number, down: number): void {

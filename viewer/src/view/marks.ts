@@ -23,6 +23,10 @@ export class Marks {
   private size = 1;
 
   constructor() {
+    // A little towards the eye, so that the faces which meet at a vertex do not cut its mark in half.
+    this.supportMaterial.onBeforeCompile = (shader) => {
+      shader.vertexShader = shader.vertexShader.replace("#include <fog_vertex>", "gl_Position.z -= 2e-3 * gl_Position.w;");
+    };
     const supports = new THREE.Points(this.supportGeometry, this.supportMaterial);
     supports.frustumCulled = false;
     this.group.add(supports, this.hand, this.cursor);
