@@ -178,7 +178,7 @@ describe("The page", () => {
     await page.waitForSelector('[data-trouble="late"]', { state: "detached" });
     program.setRole(new wire.RoleT(false, true, 2));
     await page.waitForSelector('[data-trouble="hand"]');
-    expect(await page.isDisabled("#do-reset")).toBe(true);
+    await page.waitForSelector("#do-reset:disabled");
     await page.click("#hand-button");
     await expect.poll(() => program.heard).toContain(wire.Payload.TakeHand);
   });
@@ -197,7 +197,7 @@ describe("The page", () => {
     await program.stop();
     await page.waitForSelector('[data-trouble="link"]');
     expect(await textOf(page, '[data-trouble="link"]')).toContain("Connection lost");
-    expect(await page.isDisabled("#do-reset")).toBe(true);
+    await page.waitForSelector("#do-reset:disabled");
     await page.waitForTimeout(700);
     await shoot(page, "page-connection-lost");
     program = new FakeProgram(kPage);
@@ -205,7 +205,7 @@ describe("The page", () => {
     await until(page, (handle) => handle.link === "open" && handle.state !== null);
     await page.waitForSelector('[data-trouble="link"]', { state: "detached" });
     expect(await textOf(page, "#messages")).toContain("Connected again");
-    expect(await page.isEnabled("#do-reset")).toBe(true);
+    await page.waitForSelector("#do-reset:enabled");
   });
 
   it("plays a recording: its clock, its marks, and no hand", async () => {

@@ -112,7 +112,7 @@ describe("rhexis play", () => {
   it("pauses and steps", async () => {
     await page.keyboard.press("p");
     await until(page, (handle) => handle.state?.paused === true);
-    expect(await page.isEnabled("#do-step")).toBe(true);
+    await page.waitForSelector("#do-step:enabled");
     await page.keyboard.press("s");
     await page.keyboard.press("p");
     await until(page, (handle) => handle.state?.paused === false);
@@ -175,7 +175,7 @@ describe("rhexis play", () => {
   it("gives the hand to another page that asked for it", async () => {
     const second = await open(browser, program.url);
     await second.page.waitForSelector('[data-trouble="hand"]');
-    expect(await second.page.isDisabled("#do-reset")).toBe(true);
+    await second.page.waitForSelector("#do-reset:disabled");
     await second.page.click("#hand-button");
     await page.waitForTimeout(200);
     await page.click("#hand-button");
