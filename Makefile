@@ -16,11 +16,23 @@ sources = git ls-files --cached --others --exclude-standard '*.h' '*.cpp'
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:
-.PHONY: build demo test check-floors check-format format fuzz asan tsan tidy bench clean help
+.PHONY: build viewer play demo test test-viewer check-floors check-format format fuzz asan tsan tidy bench clean help
 
 build: ## the program: build/release/bin/rhexis
 	@tools/install build
 	@$(call build_preset,release,rhexis)
+
+# Node's packages, as the lock file has them.
+viewer/node_modules/.package-lock.json: viewer/package-lock.json viewer/package.json
+	@cd viewer && npm ci --loglevel=error && touch node_modules/.package-lock.json
+
+viewer: ## the page of play and replay: build/release/share/rhexis/page
+	@tools/install viewer
+	@$(MAKE) --no-print-directory viewer/node_modules/.package-lock.json
+	@cd viewer && npm run --silent build && echo "built build/release/share/rhexis/page"
+
+play: build viewer ## hold the plate in a browser, and tear it
+	@build/release/bin/rhexis play scenes/plate-tear.toml
 
 demo: build ## the vessel of the paper with all six models: a table, and files for ParaView in out/demo
 	@tools/demo out/demo
@@ -30,7 +42,11 @@ test: ## all that must hold before a change lands: floors, format, fuzzing under
 	@tools/install test
 	@$(MAKE) --no-print-directory check-floors check-format fuzz
 	@$(call build_preset,release,all)
+	@$(MAKE) --no-print-directory test-viewer
 	@$(ctest) --test-dir build/release
+
+test-viewer: viewer ## the page: its units, and in Chromium against the program; screenshots in build/e2e
+	@cd viewer && npm test --silent && npm run --silent e2e
 
 check-floors: ## no include climbs the floors of ARCHITECTURE.md
 	@tools/check_floors

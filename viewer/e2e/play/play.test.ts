@@ -1,0 +1,243 @@
+import { mkdtempSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+
+import type { Browser, Page } from "playwright-core";
+import { afterAll, afterEach, beforeAll, describe, expect, it } from "vitest";
+
+import { forceText } from "../../src/base/format";
+import { length } from "../../src/base/vec3";
+import { Field } from "../../src/wire/rhexis_generated";
+import { launch, open, pixelOf, shoot, textOf, until, type Look } from "../support/browser";
+import { aim, enterHeadset, leaveHeadset, openWithHeadset, trigger } from "../support/headset";
+import { Listener } from "../support/listener";
+import { Program, freePort } from "../support/program";
+
+/** The page and the program together: what a person does with `make play`. */
+let browser: Browser;
+let program: Program;
+let page: Page;
+let errors: string[] = [];
+let recording = "";
+const folder = mkdtempSync(join(tmpdir(), "rhexis-e2e-"));
+const kPlate = "scenes/plate-tear.toml";
+/** Where the plate's script takes hold: left of the crack. */
+const kBeside = [0.1, 0.0, 0.01] as const;
+
+beforeAll(async () => {
+  browser = await launch();
+  program = await Program.start(["play", kPlate], await freePort());
+  await visit();
+});
+afterAll(async () => {
+  await browser.close();
+  await program.kill();
+});
+afterEach(() => expect(errors.splice(0)).toEqual([]));
+
+async function visit(look: Look = {}): Promise<void> {
+  await page?.close();
+  ({ page, errors } = await open(browser, program.url, look));
+}
+
+async function reset(): Promise<void> {
+  const epoch = await page.evaluate(() => window.rhexis?.body?.epoch ?? 0);
+  await page.keyboard.press("r");
+  await page.waitForFunction((before) => window.rhexis?.state != null && window.rhexis.state.epoch > before, epoch);
+}
+
+/** Takes the plate beside its crack and pulls it to the left until it has torn `advances` times. The button stays down. */
+async function tear(advances: number): Promise<void> {
+  const [x, y] = await pixelOf(page, kBeside);
+  await page.mouse.move(x + 2, y - 3);
+  await page.mouse.down();
+  await until(page, (handle) => handle.state?.held === true);
+  const before = await page.evaluate(() => window.rhexis?.advances ?? 0);
+  for (let k = 1; k <= 80; ++k) {
+    await page.mouse.move(x - 4 * k, y - 3);
+    await page.waitForTimeout(30);
+    if ((await page.evaluate(() => window.rhexis?.advances ?? 0)) >= before + advances) return;
+  }
+  throw new Error(`the plate did not tear ${advances} times`);
+}
+
+describe("rhexis play", () => {
+  it("shows the plate of the scene, and hands over the hand", async () => {
+    expect(await page.evaluate(() => window.rhexis?.body?.nodes)).toBeGreaterThan(400);
+    expect(await textOf(page, "#title")).toBe("Plate, torn from the middle of an edge");
+    expect(await textOf(page, "#hand-state")).toContain("You have the hand");
+    expect(await page.evaluate(() => window.rhexis?.body?.held.length)).toBeGreaterThan(10);
+    await shoot(page, "play-start-light");
+  });
+
+  it("tears under the pointer, counts the advances, and shows the session's force to the last digit", async () => {
+    const listener = new Listener(program.port);
+    await listener.ready();
+    await tear(2);
+    await until(page, (handle) => document.querySelector("#advance-count")?.textContent === String(handle.advances));
+    await until(page, (handle) => handle.state?.advances === handle.advances);
+    await shoot(page, "play-torn-light");
+    let compared = 0;
+    let largest = 0;
+    for (let k = 0; k < 60 && compared < 12; ++k) {
+      const shown = await page.evaluate(() => {
+        const force = document.querySelector<HTMLElement>("#force");
+        return { text: force?.textContent ?? "", tick: Number(force?.dataset["tick"]) };
+      });
+      await page.waitForTimeout(40);
+      const state = listener.states.get(shown.tick); // a State may have been dropped for either of the two
+      if (state === undefined) continue;
+      expect(shown.text).toBe(forceText(length(state.force)));
+      largest = Math.max(largest, length(state.force));
+      compared += 1;
+    }
+    expect(compared).toBe(12);
+    expect(largest).toBeGreaterThan(0.01);
+    const advances = await page.evaluate(() => window.rhexis?.advances ?? 0);
+    await expect.poll(() => listener.advances).toBe(advances);
+    await page.mouse.up();
+    await until(page, (handle) => handle.state?.held === false);
+    listener.close();
+  });
+
+  it("takes a tear back, and resets", async () => {
+    const before = await page.evaluate(() => window.rhexis?.advances ?? 0);
+    await page.click("#do-undo");
+    await page.waitForFunction((advances) => (window.rhexis?.advances ?? advances) < advances, before);
+    await reset();
+    expect(await page.evaluate(() => window.rhexis?.state?.held)).toBe(false);
+    expect(await page.evaluate(() => window.rhexis?.state?.hand.every((x) => x === 0))).toBe(true);
+  });
+
+  it("pauses and steps", async () => {
+    await page.keyboard.press("p");
+    await until(page, (handle) => handle.state?.paused === true);
+    await page.waitForSelector("#do-step:enabled");
+    await page.keyboard.press("s");
+    await page.keyboard.press("p");
+    await until(page, (handle) => handle.state?.paused === false);
+  });
+
+  it("records, while Space runs the script, and hands the recording out", async () => {
+    await reset();
+    const started = await page.evaluate(() => window.rhexis?.advances ?? 0);
+    await page.click("#do-record");
+    await until(page, (handle) => handle.state?.recording === true);
+    await page.focus("#picture");
+    await page.keyboard.press("Space");
+    await page.waitForFunction((before) => (window.rhexis?.advances ?? 0) >= before + 2, started);
+    await shoot(page, "play-script-light");
+    await page.keyboard.press("Space");
+    await page.click("#do-record");
+    const link = page.locator("#recordings a").first();
+    await link.waitFor();
+    const address = await link.evaluate((a) => (a as HTMLAnchorElement).href);
+    const answer = await fetch(address);
+    expect(answer.status).toBe(200);
+    const content = Buffer.from(await answer.arrayBuffer());
+    expect(content.subarray(1, 4).toString()).toBe("HDF"); // it is an HDF5 file, whole
+    recording = join(folder, "recording.h5");
+    writeFileSync(recording, content);
+  });
+
+  it("shows every field with its legend, in the dark too", async () => {
+    await visit({ dark: true });
+    await reset();
+    await tear(1);
+    for (const field of [Field.displacement, Field.von_mises, Field.principal_max, Field.mean_stress]) {
+      await page.selectOption("#field", String(field));
+      await page.waitForFunction((wanted) => window.rhexis?.state?.field === wanted, field);
+      await page.waitForSelector("#legend:visible");
+    }
+    await page.selectOption("#field", String(Field.principal_max));
+    await page.waitForFunction(() => /Maximum principal stress, k?Pa|MPa/.test(document.querySelector("#legend")?.textContent ?? ""));
+    await shoot(page, "play-stress-dark");
+    await page.mouse.up();
+    await page.selectOption("#field", "0");
+  });
+
+  it("opens another scene, and takes another value", async () => {
+    const scenes = await page.evaluate(() => window.rhexis?.hello?.scenes ?? []);
+    const bar = scenes.find((scene) => scene.includes("bar-tear"));
+    if (bar === undefined) throw new Error(`no bar among ${scenes.join(", ")}`);
+    await page.selectOption("#scene", bar);
+    await page.click("#open-scene");
+    await until(page, (handle) => handle.body?.title === "Bar, torn across from a notch" && handle.state !== null);
+    await shoot(page, "play-bar-dark");
+    await page.click("#parameters summary");
+    const young = page.locator('[id="value-material.young"]');
+    await young.fill("2e6");
+    await young.press("Enter");
+    await until(page, (handle) => JSON.parse(handle.body?.values ?? "{}")["material.young"] == 2e6 && handle.state !== null);
+    expect(await young.inputValue()).toMatch(/^(2e6|2000000(\.0)?)$/);
+  });
+
+  it("gives the hand to another page that asked for it", async () => {
+    const second = await open(browser, program.url);
+    await second.page.waitForSelector('[data-trouble="hand"]');
+    await second.page.waitForSelector("#do-reset:disabled");
+    await second.page.click("#hand-button");
+    await page.waitForTimeout(200);
+    await page.click("#hand-button");
+    await until(second.page, (handle) => handle.role?.hand === true);
+    await page.waitForSelector('[data-trouble="hand"]');
+    await second.page.close(); // and the hand is free again
+    await until(page, (handle) => handle.role?.clients === 1);
+    await page.click("#hand-button");
+    await until(page, (handle) => handle.role?.hand === true);
+  });
+
+  it("loses the program, says so, and finds it again when it runs again", async () => {
+    await program.kill();
+    await page.waitForSelector('[data-trouble="link"]');
+    program = await Program.start(["play", kPlate], program.port);
+    await until(page, (handle) => handle.link === "open" && handle.state !== null && handle.body?.title.startsWith("Plate") === true);
+    expect(await textOf(page, "#messages")).toContain("Connected again");
+    await tear(1);
+    await page.mouse.up();
+  });
+
+  it("is held by the controller of an emulated headset", async () => {
+    await page.close();
+    ({ page, errors } = await openWithHeadset(browser, program.url));
+    await reset();
+    await enterHeadset(page);
+    const before = await page.evaluate(() => window.rhexis?.advances ?? 0);
+    await aim(page, [0.09, 0.02, 0.01], [0, 0, 0]);
+    await trigger(page, true);
+    await until(page, (handle) => handle.state?.held === true);
+    for (let k = 1; k <= 12; ++k) await aim(page, [0.09, 0.02, 0.01], [-0.02 * k, 0, 0]);
+    await page.waitForFunction((advances) => (window.rhexis?.advances ?? 0) > advances, before);
+    await trigger(page, false);
+    await until(page, (handle) => handle.state?.held === false);
+    await leaveHeadset(page);
+  });
+
+  it("ends when it is asked to", async () => {
+    await page.close();
+    expect(await program.stop()).toBe(0);
+  });
+});
+
+describe("rhexis replay", () => {
+  it("plays what was recorded, and can be scrubbed", async () => {
+    program = await Program.start(["replay", recording], await freePort());
+    ({ page, errors } = await open(browser, program.url));
+    expect(await page.isVisible("#timeline")).toBe(true);
+    expect(await page.isVisible("#transport")).toBe(false);
+    await until(page, (handle) => (handle.timeline?.marks.length ?? 0) >= 2);
+    const seek = async (key: string): Promise<void> => {
+      await page.focus("#replay-time");
+      await page.keyboard.press(key);
+    };
+    await seek("End");
+    await until(page, (handle) => handle.advances >= 2);
+    const torn = await page.evaluate(() => window.rhexis?.surface.topology ?? 0);
+    await seek("Home");
+    await page.waitForFunction((topology) => (window.rhexis?.surface.topology ?? topology) < topology, torn);
+    await page.selectOption("#replay-speed", "5");
+    if ((await textOf(page, "#replay-play")) === "Play") await page.click("#replay-play");
+    await page.waitForFunction((topology) => window.rhexis?.surface.topology === topology, torn);
+    await shoot(page, "replay-light");
+  });
+});

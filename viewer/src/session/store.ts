@@ -1,0 +1,95 @@
+import { Surface } from "../body/surface";
+import type { Advance, Body, Hello, Recorded, Role, ServerFrame, State, Timeline } from "../protocol/messages";
+import { Level } from "../wire/rhexis_generated";
+import { ForceTrace } from "./trace";
+
+/** Something that happened, in words; kept in the list of messages and read out. */
+export interface Event {
+  readonly level: Level;
+  readonly text: string;
+}
+
+/** What a frame changed, so that what shows it is drawn anew and nothing else. */
+export type Change = "hello" | "role" | "body" | "edit" | "state" | "timeline" | "recorded" | "event" | "pong" | "none";
+
+/** Everything that the page knows of the interaction: what came over the wire, in the order in which it came. */
+export class Store {
+  hello: Hello | null = null;
+  role: Role | null = null;
+  body: Body | null = null;
+  /** The last that is of the present body and topology. */
+  state: State | null = null;
+  timeline: Timeline | null = null;
+  readonly surface = new Surface();
+  readonly trace = new ForceTrace();
+  advances: Advance[] = [];
+  recordings: Recorded[] = [];
+  /** Frames taken, refused ones too. */
+  frames = 0;
+
+  constructor(private readonly tell: (event: Event) => void) {}
+
+  get hasHand(): boolean {
+    return this.role?.hand ?? false;
+  }
+
+  take(frame: ServerFrame): Change {
+    this.frames += 1;
+    switch (frame.kind) {
+      case "hello":
+        this.hello = frame.hello;
+        return "hello";
+      case "role":
+        this.takeRole(frame.role);
+        return "role";
+      case "body":
+        this.takeBody(frame.body);
+        return "body";
+      case "edit":
+        if (!this.surface.applyEdit(frame.edit)) return "none";
+        this.takeAdvance(frame.edit.advance);
+        return "edit";
+      case "state":
+        return this.takeState(frame.state);
+      case "timeline":
+        this.timeline = frame.timeline;
+        return "timeline";
+      case "recorded":
+        this.recordings = [frame.recorded, ...this.recordings];
+        return "recorded";
+      case "notice":
+        this.tell(frame.notice);
+        return "event";
+      case "pong":
+        return "pong";
+    }
+  }
+
+  private takeRole(role: Role): void {
+    const before = this.role;
+    this.role = role;
+    if (before !== null && !before.hand && role.hand) this.tell({ level: Level.info, text: "You hold the hand now" });
+    if (before !== null && before.hand && !role.hand) this.tell({ level: Level.info, text: "You have given the hand away" });
+  }
+
+  private takeBody(body: Body): void {
+    const isAnother = this.body === null || body.epoch !== this.body.epoch || body.scene !== this.body.scene;
+    this.body = body;
+    this.surface.setBody(body);
+    this.advances = [...body.advances];
+    if (isAnother) this.trace.clear();
+    this.state = null;
+  }
+
+  private takeAdvance(advance: Advance | null): void {
+    if (advance === null) return;
+    this.advances = [...this.advances, advance];
+  }
+
+  private takeState(state: State): Change {
+    if (!this.surface.applyState(state)) return "none";
+    this.trace.add(state.traceTick, state.trace);
+    this.state = state;
+    return "state";
+  }
+}
