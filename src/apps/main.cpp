@@ -49,6 +49,9 @@ int run(int argc, char** argv) {
   int code = kDone;
   add_solve(app, common, code);
   add_tear(app, common, code);
+  add_play(app, common, code);
+  add_replay(app, common, code);
+  add_devices(app, common, code);
   add_check(app, common, code);
   add_compare(app, common, code);
   add_mesh(app, common, code);

@@ -1,0 +1,102 @@
+#include "apps/live_view.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+#include <thread>
+
+#include <boost/asio/ip/address.hpp>
+
+#include "apps/interrupt.h"
+
+namespace rhexis::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// As `make viewer` lays it beside the program.
+fs::path page_beside_program() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  return program.parent_path().parent_path() / "share/rhexis/page";
+}
+
+/// 128 bits of the system's own randomness, as text.
+std::string new_token() {
+  std::random_device random;
+  std::string out;
+  for (int word = 0; word < 4; ++word) out += fmt::format("{:08x}", random());
+  return out;
+}
+
+bool is_loopback(const std::string& address) {
+  boost::system::error_code error;
+  const auto parsed = boost::asio::ip::make_address(address, error);
+  return !error && parsed.is_loopback();
+}
+
+void open_browser(const std::string& url) {
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
+  const std::string command = fmt::format("xdg-open '{}' >/dev/null 2>&1 &", url);
+  if (std::system(command.c_str()) != 0) spdlog::debug("no xdg-open");
+}
+
+Expected<server::ServerSettings> settings_of(const LiveViewOptions& options) {
+  server::ServerSettings settings;
+  settings.address = options.address;
+  settings.port = static_cast<std::uint16_t>(options.port);
+  settings.token = options.token;
+  if (settings.token.empty() && !is_loopback(options.address)) settings.token = new_token();
+  settings.page = options.page.empty() ? page_beside_program() : fs::path(options.page);
+  if (std::error_code error; !fs::exists(settings.page / "index.html", error))
+    return fail(fmt::format("there is no page in {}", settings.page.string()),
+                "make viewer builds it; --page names another folder");
+  settings.recordings = options.recordings;
+  std::error_code error;
+  fs::create_directories(settings.recordings, error);
+  if (error)
+    return fail(fmt::format("cannot make the folder {}: {}", options.recordings, error.message()),
+                "--recordings names another");
+  return settings;
+}
+
+}  // namespace
+
+std::shared_ptr<LiveViewOptions> add_live_view_options(CLI::App& command) {
+  auto options = std::make_shared<LiveViewOptions>();
+  command.add_option("--port", options->port, "port of the page; 0: any that is free; 8080 unless given")
+      ->check(CLI::Range(0, 65535));
+  command.add_option("--address", options->address, "numerical address to listen at; 127.0.0.1 unless given");
+  command.add_option("--token", options->token,
+                     "asked of every visit; made up where the address is not this machine's");
+  command.add_option("--page", options->page, "folder of the page, where it is not beside the program");
+  command.add_option("--recordings", options->recordings, "folder of recordings; out/recordings unless given");
+  command.add_flag("--no-browser", options->no_browser, "do not open a browser");
+  return options;
+}
+
+int serve(const LiveViewOptions& options, const Common& common, session::CommandTarget& target, Relay& relay,
+          const std::function<Expected<void>()>& start, const std::function<void()>& stop) {
+  const Expected<server::ServerSettings> settings = settings_of(options);
+  if (!settings) return report(settings.error());
+  Expected<std::unique_ptr<server::Server>> made = server::Server::listen(*settings, target);
+  if (!made) return report(made.error());
+  server::Server& server = **made;
+  relay.set(server);
+  const Interrupt interrupt;
+  server.start();
+  if (const Expected<void> begun = start(); !begun) {
+    server.stop();
+    return report(begun.error());
+  }
+  say(common, "page      {}\nCtrl-C ends it\n", server.url());
+  std::fflush(stdout);
+  if (!options.no_browser) open_browser(server.url());
+  while (!interrupt.asked()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  stop();
+  server.stop();
+  return kDone;
+}
+
+}  // namespace rhexis::apps

@@ -1,1 +1,0 @@
-#include "haptics/device.h"
