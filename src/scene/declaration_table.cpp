@@ -316,7 +316,8 @@ Section fracture() {
                .unit = "Pa",
                .range = kModulus,
                .otherwise = "half of `strength`",
-               .doc = "The crack runs to the farthest tet whose stress is above this; not above `strength`. Not read with `toughness`."},
+               .doc = "The crack runs to the farthest tet above this, which is at most `strength`. Not read with "
+                      "`toughness`."},
               {.name = "ahead_only",
                .kind = Kind::boolean,
                .fallback = "true",
