@@ -111,10 +111,11 @@ export class App implements Listener {
         if (!store.hasHand) this.grip.drop();
         break;
       case "body":
-        this.grip.drop();
         if (store.body !== null) this.scene.show(store.body);
         if (this.headset.isOn) this.headset.placeBody();
-        break;
+        // Often it is the same body sent again, so it is not drawn before the State that says how it is deformed, and
+        // the hand is only given up when that State does not hold.
+        return;
       case "state":
         if (store.state !== null) this.grip.hear(store.state);
         break;

@@ -43,7 +43,7 @@ describe("The store", () => {
     expect(kept.advances).toEqual([]);
   });
 
-  it("keeps the trace over a body that is only sent again", () => {
+  it("keeps the trace over a body that is only sent again, until the clock starts over", () => {
     const { store: kept, take } = store();
     const plate = new Plate();
     take(wire.Payload.Body, plate.body(3, 0, "a"));
@@ -51,10 +51,13 @@ describe("The store", () => {
     state.traceTick = 7n;
     state.trace = [1, 0, 0, 0, 2, 0, 0, 0, 3];
     take(wire.Payload.State, state);
-    take(wire.Payload.Body, plate.body(3, 0, "a"));
-    expect(kept.trace.time).toBeCloseTo(0.01, 9);
     take(wire.Payload.Body, plate.body(4, 0, "a"));
-    expect(kept.trace.time).toBe(0);
+    expect(kept.trace.time).toBeCloseTo(0.01, 9);
+    const first = restingState(plate, 4, 0, 2);
+    first.traceTick = 0n;
+    first.trace = [0, 0, 0, 0, 5, 0];
+    take(wire.Payload.State, first);
+    expect(kept.trace.time).toBeCloseTo(0.002, 9);
   });
 
   it("tells what it is told, and who has the hand", () => {

@@ -240,6 +240,9 @@ describe("The page", () => {
     const page = await visit({ dark: true });
     await page.click("#help-button");
     await shoot(page, "page-help");
+    await page.click("#help form button");
+    expect(await page.isVisible("#help")).toBe(false);
+    await page.click("#help-button");
     await page.keyboard.press("Escape");
     expect(await page.isVisible("#help")).toBe(false);
   });

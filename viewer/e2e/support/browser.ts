@@ -63,7 +63,9 @@ export async function open(browser: Browser, url: string, look: Look = {}): Prom
 
 /** Waits until what `read` makes of the page's knowledge is true. */
 export async function until(page: Page, read: (handle: DebugHandle) => boolean, timeout = 30_000): Promise<void> {
-  await page.waitForFunction(`(${read.toString()})(window.rhexis)`, undefined, { timeout });
+  // As a function, which the page's policy lets a debugger bring in; a text would have to be evaluated by the page itself.
+  const isSo = new Function(`return (${read.toString()})(window.rhexis)`) as () => boolean;
+  await page.waitForFunction(isSo, undefined, { timeout });
 }
 
 export async function pixelOf(page: Page, point: readonly [number, number, number]): Promise<readonly [number, number]> {

@@ -10,6 +10,9 @@ import * as wire from "../../src/wire/rhexis_generated";
 import { Plate, frameOf, kDeclarations, restingState } from "../../test/support/plate";
 
 const kTypes: Readonly<Record<string, string>> = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml" };
+/** As the program's own (src/server): the page has to work under it. */
+const kPolicy =
+  "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; object-src 'none'; base-uri 'none'; form-action 'none'";
 const kPeriod = 20; // ms between two States
 const kStiffness = 60; // N/m
 const kTearAt = 0.03; // m that the hand pulls for each row that is torn
@@ -47,7 +50,7 @@ export class FakeProgram {
       const path = normalize(new URL(request.url ?? "/", "http://x").pathname);
       const file = path === "/" ? "/index.html" : path;
       readFile(join(this.page, file)).then(
-        (content) => response.writeHead(200, { "content-type": kTypes[extname(file)] ?? "application/octet-stream" }).end(content),
+        (content) => response.writeHead(200, { "content-type": kTypes[extname(file)] ?? "application/octet-stream", "content-security-policy": kPolicy }).end(content),
         () => response.writeHead(404).end(),
       );
     });

@@ -4,7 +4,7 @@ import { scale, subtract, type Vec3 } from "../base/vec3";
 import type { Ray } from "../body/pick";
 
 /** m: where a body hangs in front of a person who stands, and how large it then is. */
-const kBefore: Vec3 = [0, 1.15, -0.55];
+const kBefore: Vec3 = [0, 1.35, -0.6];
 const kSize = 0.45;
 
 /** Places a box of the scene, in which z is up, in a room in which y is. */

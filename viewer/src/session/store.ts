@@ -17,7 +17,7 @@ export class Store {
   hello: Hello | null = null;
   role: Role | null = null;
   body: Body | null = null;
-  /** The last that is of the present body and topology. */
+  /** The last of the present body; null until there is one. */
   state: State | null = null;
   timeline: Timeline | null = null;
   readonly surface = new Surface();
@@ -73,11 +73,9 @@ export class Store {
   }
 
   private takeBody(body: Body): void {
-    const isAnother = this.body === null || body.epoch !== this.body.epoch || body.scene !== this.body.scene;
     this.body = body;
     this.surface.setBody(body);
     this.advances = [...body.advances];
-    if (isAnother) this.trace.clear();
     this.state = null;
   }
 
