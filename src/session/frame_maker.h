@@ -27,7 +27,15 @@ class FrameMaker {
   wire::Field field_ = wire::Field::none;
   std::uint32_t epoch_ = 0;
   SurfaceValues values_;
-  VectorX u_;  ///< work: m, of every node
+  /// What was solved for last: between two States the hand may stand still.
+  struct Solved {
+    bool any = false;
+    std::vector<NodeId> held;
+    VectorX forces;  ///< N, on the held nodes
+    VectorX u;       ///< m, of every node
+  };
+  void solve(TearSession& tear);
+  Solved solved_;
 };
 
 }  // namespace rhexis::session

@@ -22,25 +22,26 @@ std::vector<Vec3> positions(const fracture::Crack& crack) {
 
 }  // namespace
 
-TickReport TearSession::tick(const Vec3& hand, const Observer& observer) {
+TickReport TearSession::tick(const Vec3& hand, const Observer& observer, int most_advances) {
   ++ticks_;
   TickReport report;
   hand_.move(hand);
-  if (settings_.tears) tear(report, observer);
+  if (settings_.tears) tear(report, observer, most_advances);
   report.force = hand_.force();
   return report;
 }
 
-void TearSession::tear(TickReport& report, const Observer& observer) {
+void TearSession::tear(TickReport& report, const Observer& observer, int most_advances) {
   solve_local_objects();
   bool tears = true;
-  while (tears && report.advances < kMostAdvancesPerTick && report.trouble.empty()) {
+  while (tears && report.advances < most_advances && report.trouble.empty()) {
     tears = false;
     for (std::size_t crack = 0; crack < cracks_.size(); ++crack) {
-      if (report.advances == kMostAdvancesPerTick || !report.trouble.empty()) break;
+      if (report.advances == most_advances || !report.trouble.empty()) break;
       if (const std::optional<Judged> judged = judge(crack)) tears = run_on(crack, *judged, report, observer) || tears;
     }
-    if (local_.empty() && report.trouble.empty()) tears = start_crack(report, observer);
+    if (local_.empty() && report.advances < most_advances && report.trouble.empty())
+      tears = start_crack(report, observer);
   }
 }
 
