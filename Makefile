@@ -16,7 +16,7 @@ sources = git ls-files --cached --others --exclude-standard '*.h' '*.cpp'
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:
-.PHONY: build viewer play demo test test-viewer check-floors check-format format fuzz asan tsan tidy bench clean help
+.PHONY: build viewer play demo test test-viewer e2e check-floors check-format format fuzz asan tsan tidy bench clean help
 
 build: ## the program: build/release/bin/rhexis
 	@tools/install build
@@ -45,8 +45,11 @@ test: ## all that must hold before a change lands: floors, format, fuzzing under
 	@$(MAKE) --no-print-directory test-viewer
 	@$(ctest) --test-dir build/release
 
-test-viewer: viewer ## the page: its units, and in Chromium against the program; screenshots in build/e2e
-	@cd viewer && npm test --silent && npm run --silent e2e
+test-viewer: viewer ## the units of the page
+	@cd viewer && npm test --silent
+
+e2e: build viewer ## the page in Chromium, alone and against the program; screenshots in build/e2e
+	@cd viewer && npm run --silent e2e
 
 check-floors: ## no include climbs the floors of ARCHITECTURE.md
 	@tools/check_floors

@@ -14,7 +14,7 @@ namespace rhexis::apps {
 namespace {
 
 /// Commands that are decided on and come with later versions; who has read of them shall not look for a slip.
-constexpr std::array<std::string_view, 4> kLaterCommands{"play", "replay", "precompute", "devices"};
+constexpr std::array<std::string_view, 1> kLaterCommands{"precompute"};
 
 std::vector<std::string> command_names(const CLI::App& level) {
   std::vector<std::string> names;
