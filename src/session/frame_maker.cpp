@@ -112,7 +112,6 @@ wire::BodyT FrameMaker::body(const Interaction& interaction) {
   out.values = scene::live_values_json(of.scene.text, of.scene.file, of.scene.overrides).value_or("{}");
   out.script = script_seconds(of.problem.pulls);
   values_.body_changed();
-  solved_.any = false;
   return out;
 }
 
@@ -137,34 +136,21 @@ wire::EditT FrameMaker::edit(const Interaction& interaction, const SurfaceChange
   out.fronts = fronts_of(tear);
   out.advance = advance_of(tear.advances().back(), interaction.body().advance_time.back());
   values_.body_changed();
-  solved_.any = false;
   return out;
-}
-
-void FrameMaker::solve(TearSession& tear) {
-  const auto held = tear.hand().nodes();
-  const VectorX& forces = tear.hand().nodal_forces();
-  const bool same = solved_.any && std::equal(held.begin(), held.end(), solved_.held.begin(), solved_.held.end()) &&
-                    forces.size() == solved_.forces.size() && forces == solved_.forces;
-  if (same) return;
-  tear.displacement(solved_.u);
-  solved_.any = true;
-  solved_.held.assign(held.begin(), held.end());
-  solved_.forces = forces;
 }
 
 wire::StateT FrameMaker::state(const Interaction& interaction, const haptics::HandState& hand) {
   TearSession& tear = interaction.tear();
   const OpenBody& of = interaction.body();
-  solve(tear);
+  tear.displacement(u_);
   wire::StateT out;
   out.epoch = epoch_;
   out.topology = static_cast<std::uint32_t>(tear.body().topology());
   out.tick = interaction.tick();
   out.time = 1e-3 * static_cast<double>(interaction.tick());
-  surface_displacement(of.surface, solved_.u, out.displacement);
+  surface_displacement(of.surface, u_, out.displacement);
   out.field = field_;
-  values_.find(field_, tear.body(), tear.settings().body.elastic, of.surface, solved_.u, out.values);
+  values_.find(field_, tear.body(), tear.settings().body.elastic, of.surface, u_, out.values);
   if (tear.hand().holds()) {
     if (const auto face = held_face(tear.hand().point(), tear.body(), of.surface)) {
       out.held = true;

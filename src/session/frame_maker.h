@@ -27,15 +27,7 @@ class FrameMaker {
   wire::Field field_ = wire::Field::none;
   std::uint32_t epoch_ = 0;
   SurfaceValues values_;
-  /// What was solved for last: between two States the hand may stand still.
-  struct Solved {
-    bool any = false;
-    std::vector<NodeId> held;
-    VectorX forces;  ///< N, on the held nodes
-    VectorX u;       ///< m, of every node
-  };
-  void solve(TearSession& tear);
-  Solved solved_;
+  VectorX u_;  ///< work: m, of every node
 };
 
 }  // namespace rhexis::session

@@ -29,11 +29,9 @@ StepOutcome Interaction::step(const haptics::HandState& hand, bool fresh) {
   follow_script(passed);
   now_ += passed;
   if (runs()) {
-    const bool stands_still = tearing_ > 0 && tearing_ < kMostAdvancesPerTick;
-    if (follows && hand.grasp == grasps_ && tear().hand().holds() && !stands_still) {
+    if (follows && hand.grasp == grasps_ && tear().hand().holds()) {
       settled_ = settled_ && vector_of(hand.hand) == by_;
       by_ = vector_of(hand.hand);
-      tearing_ = 0;
     }
     move_body();
   }
@@ -65,10 +63,8 @@ void Interaction::follow_script(std::uint64_t passed) {
 void Interaction::move_body() {
   if (settled_) return;
   const bool held = tear().hand().holds();
-  const TickReport report = tear().tick(
-      by_, [this](const AdvanceRecord& advance) { tell_of(advance); }, 1);
+  const TickReport report = tear().tick(by_, [this](const AdvanceRecord& advance) { tell_of(advance); });
   settled_ = report.advances == 0;
-  tearing_ = settled_ ? 0 : tearing_ + 1;
   if (!report.trouble.empty() && report.trouble != last_trouble_) listener_.says(wire::Level::warning, report.trouble);
   last_trouble_ = report.trouble;
   if (held && report.let_go) {
@@ -114,7 +110,6 @@ bool Interaction::hold(const Vec3& at, response::ContactMode mode) {
   torn_off_ = false;
   by_.setZero();
   settled_ = false;
-  tearing_ = 0;
   if (const Expected<void> holds = tear().grasp(at, mode); !holds) {
     say(holds.error());
     return false;
@@ -129,7 +124,6 @@ void Interaction::let_go() {
   torn_off_ = false;
   by_.setZero();
   settled_ = false;
-  tearing_ = 0;
 }
 
 }  // namespace rhexis::session

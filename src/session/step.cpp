@@ -22,26 +22,25 @@ std::vector<Vec3> positions(const fracture::Crack& crack) {
 
 }  // namespace
 
-TickReport TearSession::tick(const Vec3& hand, const Observer& observer, int most_advances) {
+TickReport TearSession::tick(const Vec3& hand, const Observer& observer) {
   ++ticks_;
   TickReport report;
   hand_.move(hand);
-  if (settings_.tears) tear(report, observer, most_advances);
+  if (settings_.tears) tear(report, observer);
   report.force = hand_.force();
   return report;
 }
 
-void TearSession::tear(TickReport& report, const Observer& observer, int most_advances) {
+void TearSession::tear(TickReport& report, const Observer& observer) {
   solve_local_objects();
   bool tears = true;
-  while (tears && report.advances < most_advances && report.trouble.empty()) {
+  while (tears && report.advances < kMostAdvancesPerTick && report.trouble.empty()) {
     tears = false;
     for (std::size_t crack = 0; crack < cracks_.size(); ++crack) {
-      if (report.advances == most_advances || !report.trouble.empty()) break;
+      if (report.advances == kMostAdvancesPerTick || !report.trouble.empty()) break;
       if (const std::optional<Judged> judged = judge(crack)) tears = run_on(crack, *judged, report, observer) || tears;
     }
-    if (local_.empty() && report.advances < most_advances && report.trouble.empty())
-      tears = start_crack(report, observer);
+    if (local_.empty() && report.trouble.empty()) tears = start_crack(report, observer);
   }
 }
 

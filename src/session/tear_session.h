@@ -47,9 +47,8 @@ class TearSession {
   /// Takes hold of the surface point nearest to `at` (m, reference). Errors: as Hand::grasp.
   Expected<void> grasp(const Vec3& at, response::ContactMode mode = response::ContactMode::hold);
   void let_go();
-  /// One tick with the hand displaced by `hand` (m) from where it took hold. `most_advances`, at least 1: what is left
-  /// then goes to the next tick; the same place of the hand again takes it up.
-  TickReport tick(const Vec3& hand, const Observer& observer = {}, int most_advances = kMostAdvancesPerTick);
+  /// One tick with the hand displaced by `hand` (m) from where it took hold.
+  TickReport tick(const Vec3& hand, const Observer& observer = {});
   /// The crack runs on by `length` (m) along `direction` (unit, normal to its front), whatever the criterion says: what
   /// experiments need that prescribe the path. The hand stays where it is. `crack` must not be finished.
   TickReport impose(std::size_t crack, const Vec3& direction, double length, const Observer& observer = {});
@@ -90,7 +89,7 @@ class TearSession {
     double seconds = 0.0;                                       ///< spent on planning it
     AdvanceRecord record;                                       ///< filled in as far as is known
   };
-  void tear(TickReport& report, const Observer& observer, int most_advances);
+  void tear(TickReport& report, const Observer& observer);
   [[nodiscard]] std::optional<Judged> judge(std::size_t crack) const;
   bool run_on(std::size_t crack, Judged judged, TickReport& report, const Observer& observer);
   bool start_crack(TickReport& report, const Observer& observer);
