@@ -19,6 +19,6 @@ export class ForcePanel {
     this.energies.set("Hand work", `${fixed(1000 * (state?.handWork ?? 0), 2)} mJ`);
     this.energies.set("Stored", `${fixed(1000 * (state?.storedEnergy ?? 0), 2)} mJ`);
     this.energies.set("Torn", `${fixed(1e6 * (state?.crackArea ?? 0), 1)} mm²`);
-    this.energies.set("Pulled", `${fixed(1000 * length(state?.hand ?? [0, 0, 0]), 1)} mm`);
+    this.energies.set("Pulled", `${fixed(1000 * (state?.held ? length(state.hand) : 0), 1)} mm`);
   }
 }
