@@ -177,6 +177,8 @@ describe("rhexis play", () => {
     await young.fill("2e6");
     await young.press("Enter");
     await until(page, (handle) => JSON.parse(handle.body?.values ?? "{}")["material.young"] == 2e6 && handle.state !== null);
+    await page.evaluate(() => document.querySelector("#parameters")?.scrollIntoView());
+    await shoot(page, "play-parameters-dark");
     expect(await young.inputValue()).toMatch(/^(2e6|2000000(\.0)?)$/);
   });
 
