@@ -7,7 +7,7 @@ import type { Command, State } from "../../src/protocol/messages";
 /** A second client of the program, which knows nothing of the page: what the session itself says. */
 export class Listener {
   readonly states = new Map<number, State>(); // by tick
-  advances = 0; // Edits with an advance
+  advances = 0; // those of the body, and of the edits since
   private readonly socket: WebSocket;
 
   constructor(port: number) {
@@ -16,6 +16,7 @@ export class Listener {
       // A copy, since the lists of a frame are views that want to be aligned.
       const frame = decode(new Uint8Array(data));
       if (frame.kind === "state") this.states.set(frame.state.tick, frame.state);
+      if (frame.kind === "body") this.advances = frame.body.advances.length;
       if (frame.kind === "edit" && frame.edit.advance !== null) this.advances += 1;
     });
   }

@@ -1,9 +1,10 @@
 import { spawn, type ChildProcess } from "node:child_process";
-import { existsSync } from "node:fs";
+import { existsSync, mkdtempSync } from "node:fs";
 import { createServer, type AddressInfo } from "node:net";
+import { tmpdir } from "node:os";
 import { join } from "node:path";
 
-import { kRepository } from "./browser";
+import { kPage, kRepository } from "./browser";
 
 export const kCommand = process.env["RHEXIS_COMMAND"] ?? join(kRepository, "build/release/bin/rhexis");
 
@@ -14,6 +15,9 @@ export async function freePort(): Promise<number> {
   await new Promise<void>((done) => server.close(() => done()));
   return port;
 }
+
+/** Of recordings and whatever else a test leaves. */
+export const kScratch = mkdtempSync(join(tmpdir(), "rhexis-e2e-"));
 
 /** A running `rhexis play` or `rhexis replay`. */
 export class Program {
@@ -31,7 +35,7 @@ export class Program {
   /** `args`: without the port. Comes back when the page can be had. */
   static async start(args: readonly string[], port: number): Promise<Program> {
     if (!existsSync(kCommand)) throw new Error(`there is no ${kCommand} (make builds it; RHEXIS_COMMAND names another)`);
-    const child = spawn(kCommand, [...args, "--port", String(port)], { cwd: kRepository, stdio: ["ignore", "pipe", "pipe"] });
+    const child = spawn(kCommand, [...args, "--port", String(port), "--page", kPage, "--recordings", kScratch, "--no-browser"], { cwd: kRepository, stdio: ["ignore", "pipe", "pipe"] });
     const program = new Program(child, port);
     for (let k = 0; k < 300; ++k) {
       if (child.exitCode !== null) throw new Error(`rhexis ended with ${child.exitCode}: ${program.output}`);

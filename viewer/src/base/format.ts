@@ -52,11 +52,6 @@ export function significant(value: number, digits = 3): string {
   return fixed(value, decimals);
 }
 
-export function withUnit(value: number, si: "Pa" | "m", digits = 3): string {
-  const unit = unitFor(si, value);
-  return `${significant(value * unit.factor, digits)}${kThinSpace}${unit.name}`;
-}
-
 /** "1:07.3" */
 export function clock(seconds: number): string {
   const tenths = Math.max(0, Math.round(seconds * 10));

@@ -11,7 +11,7 @@ interface Follower {
   readonly weights: readonly number[];
 }
 
-/** Weights by the inverse square of the distance, so that a point on a vertex moves with that vertex alone. */
+/** Weights that fall steeply with the distance: a point at a crack's tip must not be torn between its two flanks. */
 function follower(surface: Surface, point: Vec3): Follower {
   const near: { vertex: number; distance: number }[] = [];
   for (let vertex = 0; vertex < surface.vertexCount; ++vertex) {
@@ -24,7 +24,7 @@ function follower(surface: Surface, point: Vec3): Follower {
   const first = near[0];
   if (first === undefined) return { reference: point, vertices: [], weights: [] };
   if (first.distance === 0) return { reference: point, vertices: [first.vertex], weights: [1] };
-  const weights = near.map(({ distance }) => (first.distance / distance) ** 2);
+  const weights = near.map(({ distance }) => (first.distance / distance) ** 4);
   const sum = weights.reduce((a, b) => a + b, 0);
   return { reference: point, vertices: near.map(({ vertex }) => vertex), weights: weights.map((w) => w / sum) };
 }

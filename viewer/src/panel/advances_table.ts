@@ -1,4 +1,4 @@
-import { fixed, forceText } from "../base/format";
+import { fixed } from "../base/format";
 import { length } from "../base/vec3";
 import type { Advance } from "../protocol/messages";
 import { byId, make, setText } from "./dom";
@@ -41,7 +41,7 @@ export class AdvancesTable {
 }
 
 function rowOf(advance: Advance): HTMLTableRowElement {
-  const force = `${forceText(length(advance.forceBefore))} → ${forceText(length(advance.forceAfter))}`;
+  const force = `${fixed(length(advance.forceBefore), 2)} → ${fixed(length(advance.forceAfter), 2)}`;
   const cells = [
     String(advance.topology),
     fixed(advance.time, 2),

@@ -16,9 +16,9 @@ export class ForcePanel {
     this.force.dataset["tick"] = String(state?.tick ?? 0);
     this.force.classList.toggle("limited", state?.limited ?? false);
     setText(this.parts, `x ${forceText(force[0])}   y ${forceText(force[1])}   z ${forceText(force[2])}`);
-    this.energies.set("Hand work", `${fixed(1000 * (state?.handWork ?? 0), 2)} mJ`);
-    this.energies.set("Stored", `${fixed(1000 * (state?.storedEnergy ?? 0), 2)} mJ`);
+    this.energies.set("Hand work", `${fixed(state?.handWork ?? 0, 4)} J`);
+    this.energies.set("Stored", `${fixed(state?.storedEnergy ?? 0, 4)} J`);
     this.energies.set("Torn", `${fixed(1e6 * (state?.crackArea ?? 0), 1)} mm²`);
-    this.energies.set("Pulled", `${fixed(1000 * length(state?.hand ?? [0, 0, 0]), 1)} mm`);
+    this.energies.set("Pulled", `${fixed(1000 * (state?.held ? length(state.hand) : 0), 1)} mm`);
   }
 }

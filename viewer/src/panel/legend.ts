@@ -1,4 +1,4 @@
-import { significant, unitFor, withUnit } from "../base/format";
+import { significant, unitFor } from "../base/format";
 import { gradientOf } from "../colour/ramp";
 import { rampOf, type FieldKind, type Scale } from "../colour/scale";
 import { byId, make, setText } from "./dom";
@@ -30,6 +30,6 @@ export class Legend {
       const tick = this.ticks[k];
       if (tick !== undefined) setText(tick, sign + significant(value * unit.factor, 2));
     });
-    setText(this.extremes, `${withUnit(scale.least, kind.unit)} to ${withUnit(scale.most, kind.unit)} on the surface`);
+    setText(this.extremes, `in all ${significant(scale.least * unit.factor)} to ${significant(scale.most * unit.factor)}`);
   }
 }

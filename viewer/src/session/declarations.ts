@@ -58,9 +58,10 @@ function typed(value: Json): string {
   return value === null ? "" : JSON.stringify(value);
 }
 
-/** As short as it is exact. */
+/** As exact as it is, and with a power of ten where people write one: "1e6", but "2000". */
 function numberText(value: number): string {
   const plain = String(value);
+  if (Math.abs(value) < 1e5 && Math.abs(value) >= 1e-3) return plain;
   const power = value.toExponential().replace("e+", "e");
   return power.length < plain.length ? power : plain;
 }
@@ -95,10 +96,11 @@ export function rangeText(declaration: Declaration): string {
 /** What is wrong with what was typed, in words; empty: nothing that the page can tell. */
 export function complaint(declaration: Declaration, typedText: string): string {
   const text = typedText.trim();
+  if (text === "") return ""; // the key is left out, as by `--set key=`; whether it may be, the program knows
   if (declaration.kind === "number_or_auto" && text === "auto") return "";
   if (declaration.kind !== "number" && declaration.kind !== "integer" && declaration.kind !== "number_or_auto") return "";
   const value = Number(text);
-  if (text === "" || !Number.isFinite(value))
+  if (!Number.isFinite(value))
     return declaration.kind === "number_or_auto" ? "a number or auto is needed" : "a number is needed";
   if (declaration.kind === "integer" && !Number.isInteger(value)) return "a whole number is needed";
   if (value < declaration.min || value > declaration.max) return `it has to be ${rangeText(declaration)}`;

@@ -3,11 +3,11 @@ import * as THREE from "three";
 import { length, normalised, type Vec3 } from "../base/vec3";
 
 /** Parts of the arrow's own length 1; it is scaled along and across by itself. */
-const kHead = 0.3;
-const kShaftRadius = 0.02;
-const kHeadRadius = 0.06;
+const kHead = 0.5;
+const kShaftRadius = 0.024;
+const kHeadRadius = 0.085;
 /** Part of the body's size that the arrow has at the largest force. */
-const kReach = 0.45;
+const kReach = 0.28;
 /** N; below it there is nothing to point at. */
 const kLeast = 1e-3;
 

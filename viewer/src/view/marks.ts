@@ -57,7 +57,7 @@ export class Marks {
 
   /** null: nothing is held. */
   showHand(at: Vec3 | null): void {
-    place(this.hand, at, 0.012 * this.size);
+    place(this.hand, at, 0.009 * this.size);
   }
 
   showCursor(at: Vec3 | null): void {
