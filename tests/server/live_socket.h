@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <memory>
 
 #include "tests/server/socket.h"
@@ -69,7 +71,13 @@ class LiveSocket {
   /// The next frame of ours, pings answered. Null: none came in time, or the server took its leave (close_code).
   std::unique_ptr<wire::FrameT> hear(milliseconds patience = milliseconds(5000)) {
     Socket::Bytes whole;
-    while (const auto part = receive(patience)) {
+    // Pings come as long as the server lives: they do not make the patience longer.
+    const auto until = std::chrono::steady_clock::now() + patience;
+    const auto left = [&] {
+      return std::max(milliseconds(0),
+                      std::chrono::duration_cast<milliseconds>(until - std::chrono::steady_clock::now()));
+    };
+    while (const auto part = receive(left())) {
       if (part->kind == 9) send(10, part->bytes);
       if (part->kind == 8) {
         if (part->bytes.size() >= 2) close_code = part->bytes[0] << 8 | part->bytes[1];
