@@ -41,10 +41,12 @@ HapticTick::HapticTick(const TickSettings& settings, const DeviceTraits& traits)
     : settings_(settings),
       device_limit_(smaller_limit(settings.max_force, traits.max_force)),
       counts_from_hold_(traits.counts_from_hold),
+      delay_(static_cast<std::uint64_t>(std::clamp(traits.delay, 0, kMostDelay))),
       smoothing_(smoothing_of(settings.velocity_cutoff)),
       ledger_(settings.reserve, settings.restrains) {
   const Expected<void> good = check_settings(settings);
   RHEXIS_CHECK(good, "{}", good.error().message());
+  written_.fill(Vec3::Zero());
 }
 
 TickOutput HapticTick::step(const Reading& reading, const ForceSnapshot& law, bool fresh) noexcept {
@@ -68,6 +70,7 @@ TickOutput HapticTick::step(const Reading& reading, const ForceSnapshot& law, bo
   out.given = ledger_.given();
   out.balance = ledger_.balance();
   out.gain = settings_.is_rigid() ? presence_ : ledger_.gain();
+  written_[tick_ % written_.size()] = force_;
   ++tick_;
   return out;
 }
@@ -91,7 +94,12 @@ void HapticTick::follow_device(const Vec3& position) noexcept {
   at_ = position - zero_;
   const double before = coupled_.energy;
   coupled_ = couple(law_, at_, settings_.stiffness, limit_);
-  ledger_.moved(force_.dot(moved), before, coupled_.energy);
+  ledger_.moved(acting_force().dot(moved), before, coupled_.energy);
+}
+
+/// N, on the hand, between the last tick and this one.
+Vec3 HapticTick::acting_force() const noexcept {
+  return tick_ > delay_ ? written_[(tick_ - 1 - delay_) % written_.size()] : Vec3(Vec3::Zero());
 }
 
 bool HapticTick::is_held_by(std::uint32_t grasp) const noexcept {

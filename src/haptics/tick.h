@@ -4,6 +4,7 @@
 /// It knows no clock, takes no memory, throws nothing: the same readings with the same laws taken up in the same ticks
 /// give the same bits.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -45,6 +46,7 @@ class HapticTick {
   void close_grip() noexcept;
   void move_presence(bool nothing_is_wrong) noexcept;
   void find_force() noexcept;
+  [[nodiscard]] Vec3 acting_force() const noexcept;
   [[nodiscard]] Vec3 damping_force() const noexcept;
   [[nodiscard]] bool is_held_by(std::uint32_t grasp) const noexcept;
   [[nodiscard]] double fading() const noexcept;
@@ -55,6 +57,7 @@ class HapticTick {
   TickSettings settings_;
   double device_limit_;    ///< N, of settings and device; infinite: none
   bool counts_from_hold_;  ///< as DeviceTraits
+  std::uint64_t delay_;    ///< as DeviceTraits
   double smoothing_;       ///< of the velocity: the part that a new value has
   std::uint64_t tick_ = 0;
 
@@ -78,8 +81,9 @@ class HapticTick {
   Coupled coupled_;           ///< at at_, by these
   double presence_ = 0.0;     ///< in [0, 1], of all force: taking hold, letting go, late laws
   EnergyLedger ledger_;
-  Vec3 force_ = Vec3::Zero();  ///< N, on the hand
-  bool is_clipped_ = false;    ///< that was to be longer
+  Vec3 force_ = Vec3::Zero();                 ///< N, on the hand
+  std::array<Vec3, kMostDelay + 1> written_;  ///< those of the last ticks, by tick
+  bool is_clipped_ = false;                   ///< that was to be longer
 };
 
 }  // namespace rhexis::haptics
