@@ -12,6 +12,9 @@ using response::ForceSnapshot;
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
+/// Of the trend, the part that a new value has: over some ten ticks it shows whether motions go on or turn back.
+constexpr double kTrendSmoothing = 0.1;
+
 double smaller_limit(double one, double other) {
   return std::min(one > 0.0 ? one : kNone, other > 0.0 ? other : kNone);
 }
@@ -88,6 +91,7 @@ void HapticTick::follow_device(const Vec3& position) noexcept {
   if (!was_there_ && position_ && !counts_from_hold_) zero_ += position - *position_;
   const Vec3 moved = was_there_ ? Vec3(position - *position_) : Vec3(Vec3::Zero());
   if (!was_there_) velocity_.setZero();
+  trend_ += kTrendSmoothing * (velocity_.dot(moved) - trend_);
   velocity_ += smoothing_ * (moved / kTickSeconds - velocity_);
   position_ = position;
   if (phase_ == Phase::idle) return;
@@ -192,6 +196,7 @@ void HapticTick::move_presence(bool nothing_is_wrong) noexcept {
 
 Vec3 HapticTick::damping_force() const noexcept {
   Vec3 damping = Vec3::Zero();
+  if (trend_ < 0.0) return damping;  // a position that jumps to and fro would be pushed on by it
   if (!coupled_.force.isZero(0.0))
     damping = -presence_ * settings_.damping * (felt_part(law_, settings_.stiffness) * velocity_);
   const double squared = velocity_.squaredNorm();
@@ -211,7 +216,8 @@ void HapticTick::find_force() noexcept {
     if (is_clipped_) force_ *= limit / force_.norm();
     return;
   }
-  ledger_.settle(settings_.most_restraint * kTickSeconds * velocity_.squaredNorm(), coupled_.energy);
+  const double most = trend_ < 0.0 ? 0.0 : settings_.most_restraint;
+  ledger_.settle(most * kTickSeconds * velocity_.squaredNorm(), coupled_.energy);
   const Vec3 elastic = -ledger_.gain() * coupled_.force;
   const Vec3 damping = damping_force();
   double part = part_within(elastic, damping, limit_);

@@ -69,6 +69,7 @@ class HapticTick {
 
   std::optional<Vec3> position_;  ///< m, of the device, when it was last there
   bool was_there_ = false;        ///< in the last tick
+  double trend_ = 0.0;  ///< m^2/s, low-passed velocity_ times the next motion: below zero no damper takes energy
   Vec3 velocity_ = Vec3::Zero();  ///< m/s, of the device, low-passed
 
   Phase phase_ = Phase::idle;
