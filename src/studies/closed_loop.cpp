@@ -1,7 +1,7 @@
 #include "studies/closed_loop.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -41,18 +41,15 @@ Expected<ClosedLoopRun> run_closed_loop(const ClosedLoop& loop) {
   ClosedLoopRun out;
   Vec3 least = Vec3::Constant(std::numeric_limits<double>::infinity());
   Vec3 most = -least;
-  double squares = 0.0;
   for (int t = 0; t < loop.ticks; ++t) {
     const haptics::TickOutput felt = tick.step(device.read(static_cast<std::uint64_t>(t)), law, true);
     device.write(felt.force);
     out.force = std::max(out.force, felt.force.norm());
     out.gain = felt.gain;
     if (t < loop.ticks - kWatched) continue;
-    squares += device.velocity().squaredNorm();
     least = least.cwiseMin(device.position());
     most = most.cwiseMax(device.position());
   }
-  out.speed = std::sqrt(squares / kWatched);
   out.shake = (most - least).norm();
   out.given = device.taken();
   return out;

@@ -15,15 +15,14 @@ struct ClosedLoop {
   int ticks = 4000;             ///< at least kKick + kWatched
 };
 inline constexpr int kKick = 200;      ///< ticks at rest before the hand jumps aside
-inline constexpr int kWatched = 1000;  ///< ticks, the last, over which speed is measured
+inline constexpr int kWatched = 1000;  ///< ticks, the last
 
 /// How far and within how many ticks the hand jumps.
 inline constexpr double kJump = 4e-3;  // m
 inline constexpr int kJumpTicks = 20;
 
 struct ClosedLoopRun {
-  double speed = 0.0;  ///< m/s, root of the mean square over the ticks watched
-  double shake = 0.0;  ///< m, between the furthest places then
+  double shake = 0.0;  ///< m, between the furthest places of the ticks watched
   double force = 0.0;  ///< N, the largest in all
   double gain = 1.0;   ///< of the elastic force, at the end
   double given = 0.0;  ///< J, to the device in all, less what it gave

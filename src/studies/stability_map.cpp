@@ -31,8 +31,7 @@ Expected<ordered_json> one_row(const StabilityOptions& options, double stiffness
     const Expected<ClosedLoopRun> run = run_closed_loop(loop);
     if (!run) return fail(run.error());
     const std::string of = restrains ? "_kept" : "_free";
-    row["rests" + of] = run->speed < kAtRest;
-    row["speed_mm_s" + of] = 1e3 * run->speed;
+    row["rests" + of] = run->shake < kAtRest;
     row["shake_mm" + of] = 1e3 * run->shake;
     row["force_N" + of] = run->force;
     row["given_mJ" + of] = 1e3 * run->given;

@@ -23,15 +23,15 @@ struct StabilityOptions {
   double seconds = 4.0;                                          ///< of each run
 };
 
-/// A loop whose device moves more slowly than this at the end is at rest: m/s, root of the mean square. A single step
-/// of 0.06 mm in a tenth of a second is as fast.
-inline constexpr double kAtRest = 6e-4;
+/// m: a loop whose device stays within this over the last second is at rest. Five steps of 0.06 mm, among which a loop
+/// without friction may hop however stable it is.
+inline constexpr double kAtRest = 3e-4;
 
 /// Writes haptic-stability.csv, .json and .svg. Gives the rows, one per stiffness and delay. Errors: a stiffness, a
 /// delay, a device that cannot be; a folder that cannot be written to. Stopped, it gives the rows that there are.
 ///
 /// Of a row: stiffness (N/m), delay_ms, bound (N/m, the analytic one), over_bound (stiffness / bound), and for the loop
-/// without control of energy and with it (`_free`, `_kept`): rests (at the end), speed_mm_s, shake_mm, force_N (the
+/// without control of energy and with it (`_free`, `_kept`): rests, shake_mm (over the last second), force_N (the
 /// largest), given_mJ; gain (with control, at the end).
 Expected<nlohmann::ordered_json> run_stability_map(const StabilityOptions& options, const StudyFolder& folder,
                                                    const Progress& progress);

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "haptics/emulator_device.h"
 #include "haptics/tick.h"
 #include "tests/haptics/laws.h"
 
@@ -249,6 +250,28 @@ TEST(Passivity, QuantisedPositionsAndAPhysicsThatComesAndGoesGiveOutNoMoreThanOn
     const Walk got = walk(tick, kTicks, place, law);
     EXPECT_LE(got.given, got.worst_step);
   }
+}
+
+TEST(Passivity, AHandThatTremblesAtASoftBodyKeepsItsForce) {
+  std::vector<Leg> legs{{.by = Vec3(0.03, 0.01, 0.0), .seconds = 0.5}};
+  for (int k = 0; k < 160; ++k)  // 8 Hz for ten seconds, half a millimetre
+    legs.push_back({.by = (k % 2 == 0 ? 1.0 : -1.0) * Vec3(2e-4, 4e-4, -2e-4), .seconds = 0.0625});
+  EmulatorSettings settings;
+  settings.hand_stiffness = 400.0;
+  settings.hand_damping = 4.0;
+  settings.start = Vec3(1e-5, -2e-5, 0.0);  // not in the middle of a step
+  EmulatorDevice device(settings, Motion(legs));
+  ASSERT_TRUE(device.open());
+  HapticTick tick(settings_for(device.traits()), device.traits());
+  ForceSnapshot law = make_law(Vec3(300.0, 250.0, 80.0).asDiagonal());
+  TickOutput out;
+  for (std::uint64_t t = 0; t < 10'500; ++t) {
+    out = tick.step(device.read(t), law, t % 10 == 0);
+    device.write(out.force);
+  }
+  EXPECT_GT(out.force.norm(), 3.0);
+  EXPECT_GT(out.gain, 0.95);
+  EXPECT_LT(device.taken(), 0.0);
 }
 
 TEST(Passivity, NoiseGivesOutNoMoreThanATickAtATime) {
