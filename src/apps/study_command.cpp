@@ -9,6 +9,7 @@
 #include "apps/interrupt.h"
 #include "apps/progress.h"
 #include "studies/restructuring.h"
+#include "studies/stability_map.h"
 
 namespace rhexis::apps {
 namespace {
@@ -26,6 +27,7 @@ struct StudyRun {
 std::string cell_text(const ordered_json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_number_float() && std::isfinite(value.get<double>())) return fmt::format("{:.4g}", value.get<double>());
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   return value.is_number_integer() ? value.dump() : "-";
 }
 
@@ -99,13 +101,37 @@ void add_restructuring(CLI::App& study, const Common& common, int& code) {
   command->callback([one, &common, &code] { code = run(*one, common); });
 }
 
+void add_haptic_stability(CLI::App& study, const Common& common, int& code) {
+  CLI::App* command = study.add_subcommand("haptic-stability", "Which couplings an emulated haptic device bears");
+  command->footer("Example: rhexis study haptic-stability --delay 0 1 2 --stiffness 500 1000 2000");
+  auto one = std::make_shared<StudyRun>();
+  one->name = "haptic-stability";
+  one->shown = {"stiffness",     "delay_ms",   "over_bound",    "rests_free",
+                "shake_mm_free", "rests_kept", "shake_mm_kept", "gain"};
+  auto options = std::make_shared<studies::StabilityOptions>();
+  command->add_option("--out", one->out, "folder for the table and figure; out/haptic-stability unless given");
+  command->add_option("--stiffness", options->stiffness, "N/m, of the coupling")->type_name("N/M")->expected(-1);
+  command->add_option("--damping", options->damping, "N s/m, of the coupling")->type_name("NS/M");
+  command->add_option("--delay", options->delay, "ms, whole ones, of the force")->type_name("MS")->expected(-1);
+  command->add_option("--resolution", options->device.resolution, "m, of the position; 0: exact")->type_name("M");
+  command->add_option("--mass", options->device.mass, "kg, of device and finger")->type_name("KG");
+  command->add_option("--hand-damping", options->device.hand_damping, "N s/m, of the hand")->type_name("NS/M");
+  command->add_option("--seconds", options->seconds, "of each run")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(1.2, 600.0));
+  one->run = [options](const studies::StudyFolder& folder, const studies::Progress& progress) {
+    return studies::run_stability_map(*options, folder, progress);
+  };
+  command->callback([one, &common, &code] { code = run(*one, common); });
+}
+
 }  // namespace
 
 void add_study(CLI::App& app, const Common& common, int& code) {
   CLI::App* study = app.add_subcommand("study", "The experiments of the papers, into tables and figures");
   study->footer("Example: rhexis study restructuring --out out/restructuring");
   study->require_subcommand(1);
-  for (const auto add : {add_restructuring}) add(*study, common, code);
+  for (const auto add : {add_restructuring, add_haptic_stability}) add(*study, common, code);
 }
 
 }  // namespace rhexis::apps

@@ -18,6 +18,8 @@ struct Reading {
   bool present = true;           ///< false: lost (unplugged, its client gone, its script at an end)
 };
 
+inline constexpr int kMostDelay = 63;  ///< ticks
+
 /// What is fixed while a device is open.
 struct DeviceTraits {
   std::string name;         ///< of `--device`
@@ -25,6 +27,9 @@ struct DeviceTraits {
   double reach = 0.0;       ///< m, edge of the cube it works in; 0: unbounded
   double resolution = 0.0;  ///< m; 0: none worth the name
   double max_force = 0.0;   ///< N; 0: it cannot push back
+  /// Ticks from the writing of a force until it acts, beyond none, as far as is known; at most kMostDelay. Who watches
+  /// the energy has to know.
+  int delay = 0;
   /// Its position counts from where the hand took hold, as a pointer's does. Else the loop notes where that was.
   bool counts_from_hold = false;
 };

@@ -32,6 +32,7 @@ DeviceTraits EmulatorDevice::make_traits(const EmulatorSettings& settings) {
   traits.what = "an emulated machine in an emulated hand, which feels the force: tests and measurements";
   traits.resolution = settings.resolution;
   traits.max_force = settings.max_force;
+  traits.delay = settings.delay;
   return traits;
 }
 

@@ -33,7 +33,6 @@ struct EmulatorSettings {
 class EmulatorDevice final : public Device {
  public:
   static constexpr const char* kName = "emulator";
-  static constexpr int kMostDelay = 63;
   static DeviceTraits make_traits(const EmulatorSettings& settings);
 
   /// `motion`: of the hand.

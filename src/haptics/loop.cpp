@@ -123,6 +123,12 @@ void HapticLoop::run() noexcept {
     sleep_until(due);
     const std::int64_t begin = time_of(CLOCK_MONOTONIC);
     const std::int64_t late = std::max<std::int64_t>(0, begin - due);
+    const LateCause cause = last.cause_of_next(due);
+    if (late > kMostBehind * kPeriod) {
+      const std::int64_t behind = late / kPeriod;
+      due += behind * kPeriod;
+      statistics_.add_skipped(static_cast<std::uint64_t>(behind));
+    }
 
     const bool fresh = laws_.take(law);  // before the device: a hold that has come is felt from where its hand is
     const Reading reading = device_.read(number);
@@ -131,21 +137,16 @@ void HapticLoop::run() noexcept {
     hand_.publish(out.hand);
     trace_.push(make_sample(reading, fresh, late, out.hand));
 
-    last.cause = last.cause_of_next(due);
+    last.cause = cause;
     last.end = time_of(CLOCK_MONOTONIC);
     const std::int64_t spent = time_of(CLOCK_THREAD_CPUTIME_ID);
     last.wall = last.end - begin;
     last.processor = spent - processor;
     processor = spent;
     const bool holds = (out.hand.flags & HandState::holds) != 0;
-    statistics_.add({number, 1e-3 * static_cast<double>(late), 1e-3 * static_cast<double>(last.wall), last.cause, holds,
-                     out.law_age});
+    statistics_.add(
+        {number, 1e-3 * static_cast<double>(late), 1e-3 * static_cast<double>(last.wall), cause, holds, out.law_age});
     due += kPeriod;
-    if (last.end - due > kMostBehind * kPeriod) {
-      const std::int64_t behind = (last.end - due) / kPeriod;
-      due += behind * kPeriod;
-      statistics_.add_skipped(static_cast<std::uint64_t>(behind));
-    }
   }
 }
 

@@ -12,6 +12,9 @@ using response::ForceSnapshot;
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
+/// Of the trend, the part that a new value has: over some ten ticks it shows whether motions go on or turn back.
+constexpr double kTrendSmoothing = 0.1;
+
 double smaller_limit(double one, double other) {
   return std::min(one > 0.0 ? one : kNone, other > 0.0 ? other : kNone);
 }
@@ -41,10 +44,13 @@ HapticTick::HapticTick(const TickSettings& settings, const DeviceTraits& traits)
     : settings_(settings),
       device_limit_(smaller_limit(settings.max_force, traits.max_force)),
       counts_from_hold_(traits.counts_from_hold),
+      delay_(static_cast<std::uint64_t>(std::clamp(traits.delay, 0, kMostDelay))),
       smoothing_(smoothing_of(settings.velocity_cutoff)),
+      filter_(traits.resolution),
       ledger_(settings.reserve, settings.restrains) {
   const Expected<void> good = check_settings(settings);
   RHEXIS_CHECK(good, "{}", good.error().message());
+  written_.fill(Vec3::Zero());
 }
 
 TickOutput HapticTick::step(const Reading& reading, const ForceSnapshot& law, bool fresh) noexcept {
@@ -68,6 +74,7 @@ TickOutput HapticTick::step(const Reading& reading, const ForceSnapshot& law, bo
   out.given = ledger_.given();
   out.balance = ledger_.balance();
   out.gain = settings_.is_rigid() ? presence_ : ledger_.gain();
+  written_[tick_ % written_.size()] = force_;
   ++tick_;
   return out;
 }
@@ -83,15 +90,29 @@ void HapticTick::take_up(const ForceSnapshot& snapshot) noexcept {
 void HapticTick::follow_device(const Vec3& position) noexcept {
   // After a gap the hold goes on from where it was: nobody knows how the device came where it is.
   if (!was_there_ && position_ && !counts_from_hold_) zero_ += position - *position_;
-  const Vec3 moved = was_there_ ? Vec3(position - *position_) : Vec3(Vec3::Zero());
+  const Vec3 seen = was_there_ ? filter_.follow(position) : filter_.restart(position);
+  const Vec3 moved = was_there_ ? Vec3(seen - *seen_) : Vec3(Vec3::Zero());
   if (!was_there_) velocity_.setZero();
+  trend_ += kTrendSmoothing * (velocity_.dot(moved) - trend_);
   velocity_ += smoothing_ * (moved / kTickSeconds - velocity_);
   position_ = position;
+  seen_ = seen;
   if (phase_ == Phase::idle) return;
   at_ = position - zero_;
-  const double before = coupled_.energy;
+  aside_ = seen - position;
+  const double before = stored_;
+  evaluate();
+  ledger_.moved(acting_force().dot(moved), before, stored_);
+}
+
+void HapticTick::evaluate() noexcept {
   coupled_ = couple(law_, at_, settings_.stiffness, limit_);
-  ledger_.moved(force_.dot(moved), before, coupled_.energy);
+  stored_ = aside_.isZero(0.0) ? coupled_.energy : couple(law_, at_ + aside_, settings_.stiffness, limit_).energy;
+}
+
+/// N, on the hand, between the last tick and this one.
+Vec3 HapticTick::acting_force() const noexcept {
+  return tick_ > delay_ ? written_[(tick_ - 1 - delay_) % written_.size()] : Vec3(Vec3::Zero());
 }
 
 bool HapticTick::is_held_by(std::uint32_t grasp) const noexcept {
@@ -116,9 +137,10 @@ void HapticTick::take_hold() noexcept {
   force_.setZero();
   law_ = newest_law();
   limit_ = limit_now();
-  coupled_ = couple(law_, at_, settings_.stiffness, limit_);
+  aside_ = *seen_ - *position_;
+  evaluate();
   ledger_.restart();
-  ledger_.move_gain(1.0, 1.0, coupled_.energy);
+  ledger_.move_gain(1.0, 1.0, stored_);
   presence_ = settings_.is_rigid() ? 0.0 : 1.0;
 }
 
@@ -144,9 +166,9 @@ void HapticTick::follow_law() noexcept {
   if (phase_ != Phase::holding || !newest_is_readable_) return;
   law_ = newest_law();
   limit_ = limit_now();
-  const double before = coupled_.energy;
-  coupled_ = couple(law_, at_, settings_.stiffness, limit_);
-  ledger_.law_changed(before, coupled_.energy);
+  const double before = stored_;
+  evaluate();
+  ledger_.law_changed(before, stored_);
 }
 
 /// What the spring would have to stretch further for is let slip: the hand stays, the device's zero comes after it. The
@@ -157,12 +179,15 @@ void HapticTick::close_grip() noexcept {
     const Vec3 reached = coupled_.hand + coupled_.force / settings_.stiffness;
     zero_ += at_ - reached;
     at_ = reached;
-    const double before = coupled_.energy;
-    coupled_ = couple(law_, at_, settings_.stiffness, limit_);
-    ledger_.slipped(before - coupled_.energy);
+    const double before = stored_;
+    evaluate();
+    ledger_.slipped(before - stored_);
   }
   ++held_ticks_;
-  limit_ = limit_now();  // nothing is stretched beyond it, so that the energy stays
+  limit_ = limit_now();  // nothing that is read is stretched beyond it, so that the force stays
+  const double before = stored_;
+  evaluate();
+  ledger_.law_changed(before, stored_);
 }
 
 double HapticTick::fading() const noexcept {
@@ -179,11 +204,12 @@ void HapticTick::move_presence(bool nothing_is_wrong) noexcept {
   else
     presence_ = std::min(fading(), presence_ + step);
   presence_ = std::max(0.0, presence_);
-  ledger_.move_gain(presence_, step, coupled_.energy);
+  ledger_.move_gain(presence_, step, stored_);
 }
 
 Vec3 HapticTick::damping_force() const noexcept {
   Vec3 damping = Vec3::Zero();
+  if (trend_ < 0.0) return damping;  // a position that jumps to and fro would be pushed on by it
   if (!coupled_.force.isZero(0.0))
     damping = -presence_ * settings_.damping * (felt_part(law_, settings_.stiffness) * velocity_);
   const double squared = velocity_.squaredNorm();
@@ -203,7 +229,8 @@ void HapticTick::find_force() noexcept {
     if (is_clipped_) force_ *= limit / force_.norm();
     return;
   }
-  ledger_.settle(settings_.most_restraint * kTickSeconds * velocity_.squaredNorm(), coupled_.energy);
+  const double most = trend_ < 0.0 ? 0.0 : settings_.most_restraint;
+  ledger_.settle(most * kTickSeconds * velocity_.squaredNorm(), stored_);
   const Vec3 elastic = -ledger_.gain() * coupled_.force;
   const Vec3 damping = damping_force();
   double part = part_within(elastic, damping, limit_);

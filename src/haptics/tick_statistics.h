@@ -27,7 +27,7 @@ enum class LateCause : std::uint8_t { none, woken_late, interrupted, own_work };
 
 struct TickReport {
   std::uint64_t ticks = 0;
-  std::uint64_t missed = 0;   ///< began more than a period after their time
+  std::uint64_t missed = 0;   ///< began more than a period after their time, or not at all
   std::uint64_t skipped = 0;  ///< periods given up after a long stop: the ticks go on, later
   std::uint64_t worst_tick = 0;
   double worst_late = 0.0;  ///< us
@@ -50,7 +50,10 @@ class TickStatistics {
     std::uint32_t law_age = 0;
   };
   void add(const Tick& tick) noexcept;
-  void add_skipped(std::uint64_t periods) noexcept { increase(skipped_, periods); }
+  void add_skipped(std::uint64_t periods) noexcept {
+    increase(skipped_, periods);
+    increase(missed_, periods);
+  }
 
   /// By any thread. Each number is whole; a tick may be in one and not yet in another.
   [[nodiscard]] TickReport report() const;

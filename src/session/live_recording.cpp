@@ -49,6 +49,8 @@ Expected<void> LiveSession::begin_recording() {
                                                                          .device = traits.name,
                                                                          .tick = tick_settings_,
                                                                          .device_max_force = traits.max_force,
+                                                                         .device_resolution = traits.resolution,
+                                                                         .device_delay = traits.delay,
                                                                          .counts_from_hold = traits.counts_from_hold});
   if (!recorder) return fail(std::move(recorder.error()));
   if (loop_) loop_->loop.stop();

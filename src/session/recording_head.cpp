@@ -56,6 +56,8 @@ haptics::DeviceTraits RecordingHead::traits() const {
   haptics::DeviceTraits out;
   out.name = device;
   out.max_force = device_max_force;
+  out.resolution = device_resolution;
+  out.delay = device_delay;
   out.counts_from_hold = counts_from_hold;
   return out;
 }
@@ -64,6 +66,8 @@ std::string text_of(const RecordingHead& head) {
   Json json{{"version", head.version},
             {"device", head.device},
             {"device_max_force", head.device_max_force},
+            {"device_resolution", head.device_resolution},
+            {"device_delay", head.device_delay},
             {"counts_from_hold", head.counts_from_hold}};
   Json tick = Json::object();
   each_number(head.tick, [&](const char* name, const auto& value) { tick[name] = value; });
@@ -80,6 +84,8 @@ Expected<RecordingHead> parse_recording_head(const std::string& text) {
   if (!has(json, "version", head.version)) return missing("version");
   if (!has(json, "device", head.device)) return missing("device");
   if (!has(json, "device_max_force", head.device_max_force)) return missing("device_max_force");
+  if (!has(json, "device_resolution", head.device_resolution)) return missing("device_resolution");
+  if (!has(json, "device_delay", head.device_delay)) return missing("device_delay");
   if (!has(json, "counts_from_hold", head.counts_from_hold)) return missing("counts_from_hold");
   if (!json.contains("tick") || !json["tick"].is_object()) return missing("tick");
   const char* bad = nullptr;

@@ -14,8 +14,10 @@ struct RecordingHead {
   std::string version;  ///< of rhexis
   std::string device;   ///< its name
   haptics::TickSettings tick;
-  double device_max_force = 0.0;  ///< N, of DeviceTraits
-  bool counts_from_hold = false;  ///< of DeviceTraits
+  double device_max_force = 0.0;   ///< N, of DeviceTraits
+  double device_resolution = 0.0;  ///< m, of DeviceTraits
+  int device_delay = 0;            ///< ticks, of DeviceTraits
+  bool counts_from_hold = false;   ///< of DeviceTraits
 
   /// What a HapticTick has to know of the device.
   [[nodiscard]] haptics::DeviceTraits traits() const;
