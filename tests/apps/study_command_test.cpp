@@ -36,6 +36,18 @@ TEST(StudyCommand, WritesItsFilesAndPrintsItsRows) {
   EXPECT_EQ(test::run_rhexis("--quiet " + arguments).out, "");
 }
 
+TEST(StudyCommand, MapsWhatAHapticDeviceBears) {
+  const std::filesystem::path folder = test::fresh_folder("stability");
+  const test::Ran ran = test::run_rhexis("study haptic-stability --stiffness 500 8000 --delay 0 6 --seconds 2 --out '" +
+                                         folder.string() + "'");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.out, HasSubstr("rests_kept"));
+  EXPECT_THAT(ran.out, HasSubstr("yes"));
+  EXPECT_THAT(ran.out, HasSubstr("no"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "haptic-stability.svg"));
+  EXPECT_EQ(test::run_rhexis("study haptic-stability --delay 100 --out '" + folder.string() + "'").code, 2);
+}
+
 TEST(StudyCommand, HelpNamesTheWays) {
   EXPECT_THAT(test::run_rhexis("study restructuring --help").out, HasSubstr("exact-all-work"));
 }
