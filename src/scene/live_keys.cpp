@@ -5,7 +5,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scene/overrides.h"
 #include "scene/values.h"
 
 namespace rhexis::scene {
@@ -67,11 +66,7 @@ std::string live_keys_json() {
 
 Expected<std::string> live_values_json(const std::string& text, const std::string& file,
                                        const std::vector<std::string>& overrides) {
-  Expected<Node> root = parse_document(text, file);
-  if (!root) return fail(std::move(root.error()));
-  for (const std::string& override : overrides)
-    if (Expected<void> applied = apply_override(*root, override); !applied) return fail(std::move(applied.error()));
-  const Expected<Values> values = validate(*root);
+  const Expected<Values> values = parse_values(text, file, overrides);
   if (!values) return fail(values.error());
   Json out = Json::object();
   for_each_live_key([&](const Section& section, const Key& key) {

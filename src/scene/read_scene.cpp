@@ -102,12 +102,17 @@ Expected<Scene> settings_of(const Values& values, const std::string& file) {
 
 }  // namespace
 
-Expected<Scene> parse_scene(std::string_view text, const std::string& file, const std::vector<std::string>& overrides) {
+Expected<Values> parse_values(std::string_view text, const std::string& file,
+                              const std::vector<std::string>& overrides) {
   Expected<Node> root = parse_document(text, file);
   if (!root) return fail(std::move(root.error()));
   for (const std::string& override : overrides)
     if (Expected<void> applied = apply_override(*root, override); !applied) return fail(std::move(applied.error()));
-  const Expected<Values> values = validate(*root);
+  return validate(*root);
+}
+
+Expected<Scene> parse_scene(std::string_view text, const std::string& file, const std::vector<std::string>& overrides) {
+  const Expected<Values> values = parse_values(text, file, overrides);
   if (!values) return fail(values.error());
   return settings_of(*values, file);
 }

@@ -87,5 +87,8 @@ struct Values {
 
 /// Holds a tree against the declaration. The first mistake in the order of the document is the error.
 [[nodiscard]] Expected<Values> validate(const Node& root);
+/// Of a scene's text with the arguments of `--set` applied in order. `file` stands in the errors.
+[[nodiscard]] Expected<Values> parse_values(std::string_view text, const std::string& file,
+                                            const std::vector<std::string>& overrides);
 
 }  // namespace rhexis::scene
