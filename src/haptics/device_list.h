@@ -1,6 +1,6 @@
 #pragma once
 
-/// The devices by name: what `rhexis devices` lists and `--device` takes. A driver is added here (docs/haptics.md).
+/// The devices by name: what `rhexis devices` lists. A driver is added here (docs/haptics.md).
 
 #include <memory>
 #include <string>
