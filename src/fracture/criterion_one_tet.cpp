@@ -39,7 +39,18 @@ Vec3 direction_in(const FrontPoint& point, const Vec3& normal) {
   return across * ((side < 0.0 ? -1.0 : 1.0) / size);
 }
 
+/// Mean stress and the root of the second invariant of what is left, in which the principal stresses are
+/// p + 2 sqrt(J2 / 3) cos(theta + {0, -120, 120} degrees), 0 <= theta <= 60 degrees (Lode).
+struct Invariants {
+  explicit Invariants(const Mat3& stress)
+      : p(stress.trace() / 3.0), root_j2(std::sqrt(0.5) * (stress - p * Mat3::Identity()).norm()) {}
+  double p;
+  double root_j2;
+};
+
+/// A rule has a value and a direction by the principal stresses, and a bound of the value that needs none.
 struct MaximumPrincipal {
+  static double bound(const Invariants& s) { return s.p + 2.0 / std::sqrt(3.0) * s.root_j2; }
   static double value(const PrincipalStress& s) { return s.value[0]; }
   static Vec3 direction(const PrincipalStress& s, const FrontPoint& point) {
     return direction_in(point, axis_near(s, 0, point.normal()));
@@ -47,6 +58,7 @@ struct MaximumPrincipal {
 };
 
 struct MaximumShear {
+  static double bound(const Invariants& s) { return 2.0 * s.root_j2; }
   static double value(const PrincipalStress& s) { return s.value[0] - s.value[2]; }
   /// Of the two planes at 45 degrees between s1 and s3, the one nearer the present direction.
   static Vec3 direction(const PrincipalStress& s, const FrontPoint& point) {
@@ -61,6 +73,7 @@ struct MaximumShear {
 };
 
 struct VonMises {
+  static double bound(const Invariants& s) { return std::sqrt(3.0) * s.root_j2; }
   static double value(const PrincipalStress& s) {
     const double a = s.value[0] - s.value[1];
     const double b = s.value[1] - s.value[2];
@@ -85,9 +98,14 @@ class OneTetCriterion final : public Criterion {
     for (const TetStress& tet : tets) {
       const auto seen = see(section, tet);
       if (!seen || !counts(*seen, settings_)) continue;
+      // Most tets are far below what decides anything: their principal stresses are not worked out.
+      const Invariants invariants(tet.stress);
+      const double rounding = kSameStress * (std::abs(invariants.p) + invariants.root_j2);
+      const double most = Rule::bound(invariants) + rounding;
+      if (out.tet.valid() && most < settings_.advance_threshold && most < out.value) continue;
       const PrincipalStress principal = principal_stress(tet.stress);
       const double value = Rule::value(principal);
-      if (value >= settings_.advance_threshold) out.length = std::max(out.length, seen->distance);
+      if (value >= settings_.advance_threshold) out.length = std::max(out.length, seen->distance());
       if (!out.tet.valid() || value > out.value) {
         out.tet = tet.tet;
         out.value = value;

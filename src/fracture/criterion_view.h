@@ -13,9 +13,10 @@ namespace rhexis::fracture {
 inline constexpr double kBeside = 1e-9;
 
 struct SeenTet {
-  double distance = 0.0;  ///< m, from the front across its tangent
-  double ahead = 0.0;     ///< m, along the present direction
-  double above = 0.0;     ///< m, along the crack's normal
+  double ahead = 0.0;  ///< m, along the present direction
+  double above = 0.0;  ///< m, along the crack's normal
+  /// m, from the front across its tangent
+  [[nodiscard]] double distance() const { return std::hypot(ahead, above); }
 };
 
 /// Empty for a tet at the hand or out of the section.
@@ -26,7 +27,6 @@ struct SeenTet {
   SeenTet seen;
   seen.ahead = way.dot(section.point.direction);
   seen.above = way.dot(section.point.normal());
-  seen.distance = std::hypot(seen.ahead, seen.above);
   return seen;
 }
 

@@ -1,6 +1,7 @@
 #include "fracture/local_object.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "base/check.h"
 #include "element/linear_tet.h"
@@ -46,16 +47,16 @@ struct LocalObject::Core {
   std::vector<element::LinearTet> shape;
   VectorX load;  ///< f_o, 3 per local node, zero on the boundary
   linalg::CholeskyFactor factor{linalg::Ordering::amd};
-  bool stable = true;
-  VectorX u;      ///< 3 per local node
-  VectorX force;  ///< work space of solve
-  VectorX interior_u;
+  std::optional<bool> stable;  ///< whether it was factored
+  VectorX u;                   ///< 3 per local node
+  VectorX force;               ///< work space of solve
   std::vector<TetStress> stresses;
   std::vector<Mat3> gradients;
 
   void number(const mesh::TornMesh& body, std::span<const std::uint8_t> supported, std::span<const NodeId> hand);
   void add_loads(const LocalLoads& loads);
-  void factor_interior();
+  [[nodiscard]] bool factor_interior();
+  void find_stresses();
   [[nodiscard]] std::int32_t place(NodeId node) const {
     return static_cast<std::int32_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
   }
@@ -106,7 +107,8 @@ void LocalObject::Core::add_loads(const LocalLoads& loads) {
     load.segment<3>(3 * static_cast<Eigen::Index>(i)) += loads.node_force[nodes[i].index()];
 }
 
-void LocalObject::Core::factor_interior() {
+bool LocalObject::Core::factor_interior() {
+  if (interior.empty()) return true;
   std::vector<bool> held(3 * nodes.size(), false);
   for (const std::int32_t node : boundary_place)
     for (std::int32_t i = 0; i < 3; ++i) held[static_cast<std::size_t>(3 * node + i)] = true;
@@ -129,8 +131,15 @@ void LocalObject::Core::factor_interior() {
       }
     }
   }
-  stable = factor.analyse(*K.pattern, linalg::make_free_dofs(held)) == linalg::CholeskyOutcome::ok &&
-           factor.factor(K.values) == linalg::CholeskyOutcome::ok && factor.smallest_pivot() > kSmallestPivot;
+  return factor.analyse(*K.pattern, linalg::make_free_dofs(held)) == linalg::CholeskyOutcome::ok &&
+         factor.factor(K.values) == linalg::CholeskyOutcome::ok && factor.smallest_pivot() > kSmallestPivot;
+}
+
+void LocalObject::Core::find_stresses() {
+  for (std::size_t tet = 0; tet < tets.size(); ++tet) {
+    gradients[tet] = element::displacement_gradient(shape[tet], corner_displacements(local[tet], u));
+    stresses[tet].stress = element::small_strain_stress(elastic, gradients[tet]);
+  }
 }
 
 LocalObject::LocalObject(const mesh::TornMesh& body, const material::Elastic& elastic, std::vector<TetId> tets,
@@ -145,28 +154,31 @@ LocalObject::LocalObject(const mesh::TornMesh& body, const material::Elastic& el
   const auto dofs = 3 * static_cast<Eigen::Index>(core_->nodes.size());
   core_->u = VectorX::Zero(dofs);
   core_->force = VectorX::Zero(dofs);
-  core_->interior_u = VectorX::Zero(3 * static_cast<Eigen::Index>(core_->interior.size()));
   core_->gradients.assign(core_->tets.size(), Mat3::Zero());
-  if (!core_->interior.empty()) core_->factor_interior();
 }
 
 LocalObject::~LocalObject() = default;
 LocalObject::LocalObject(LocalObject&&) noexcept = default;
 LocalObject& LocalObject::operator=(LocalObject&&) noexcept = default;
 
-bool LocalObject::stable() const { return core_->stable; }
 const std::vector<TetId>& LocalObject::tets() const { return core_->tets; }
+const std::vector<NodeId>& LocalObject::nodes() const { return core_->nodes; }
 const std::vector<NodeId>& LocalObject::boundary() const { return core_->boundary; }
 const std::vector<NodeId>& LocalObject::interior() const { return core_->interior; }
-const VectorX& LocalObject::interior_displacement() const { return core_->interior_u; }
+const VectorX& LocalObject::displacement() const { return core_->u; }
 const std::vector<TetStress>& LocalObject::stresses() const { return core_->stresses; }
 const std::vector<Mat3>& LocalObject::gradients() const { return core_->gradients; }
 
-void LocalObject::solve(const VectorX& u_boundary) {
+bool LocalObject::factor() {
+  if (!core_->stable) core_->stable = core_->factor_interior();
+  return *core_->stable;
+}
+
+bool LocalObject::solve(const VectorX& u_boundary) {
   Core& core = *core_;
-  RHEXIS_CHECK(core.stable, "an unstable local object is solved");
   RHEXIS_CHECK(u_boundary.size() == 3 * static_cast<Eigen::Index>(core.boundary.size()),
                "{} boundary nodes are given {} displacements", core.boundary.size(), u_boundary.size());
+  if (!factor()) return false;
   core.u.setZero();
   for (std::size_t i = 0; i < core.boundary.size(); ++i)
     core.u.segment<3>(3 * core.boundary_place[i]) = u_boundary.segment<3>(3 * static_cast<Eigen::Index>(i));
@@ -180,16 +192,17 @@ void LocalObject::solve(const VectorX& u_boundary) {
       for (std::size_t k = 0; k < 4; ++k) core.force.segment<3>(3 * core.local[tet][k]) -= stress * shape.gradient[k];
     }
     core.factor.solve(core.force, core.force);
-    for (std::size_t i = 0; i < core.interior.size(); ++i) {
-      core.u.segment<3>(3 * core.interior_place[i]) = core.force.segment<3>(3 * core.interior_place[i]);
-      core.interior_u.segment<3>(3 * static_cast<Eigen::Index>(i)) = core.u.segment<3>(3 * core.interior_place[i]);
-    }
+    for (const std::int32_t place : core.interior_place)
+      core.u.segment<3>(3 * place) = core.force.segment<3>(3 * place);
   }
-  for (std::size_t tet = 0; tet < core.tets.size(); ++tet) {
-    core.gradients[tet] =
-        element::displacement_gradient(core.shape[tet], corner_displacements(core.local[tet], core.u));
-    core.stresses[tet].stress = element::small_strain_stress(core.elastic, core.gradients[tet]);
-  }
+  core.find_stresses();
+  return true;
+}
+
+void LocalObject::take(const VectorX& u) {
+  RHEXIS_CHECK(u.size() == core_->u.size(), "{} nodes are given {} displacements", core_->nodes.size(), u.size());
+  core_->u = u;
+  core_->find_stresses();
 }
 
 }  // namespace rhexis::fracture

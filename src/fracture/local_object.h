@@ -1,7 +1,9 @@
 #pragma once
 
-/// The local object (sections 2.2, 4.1 of the thesis): the tets around a crack front, solved by themselves with the
-/// displacement of their boundary given: FEM2, K_oo u_o = f_o - K_ob u_b (4.7). Made anew after each advance.
+/// The local object (sections 2.2, 4.1 of the thesis): the tets around a crack front, whose stress says whether the
+/// crack runs on. Where the body's response gives the displacement of its boundary alone, it is solved by itself: FEM2,
+/// K_oo u_o = f_o - K_ob u_b (4.7). Where the response is that of the torn body, and so gives the inside as well, that
+/// solve would find the same once more, and the displacement is taken as it is. Made anew after each advance.
 
 #include <cstdint>
 #include <memory>
@@ -36,17 +38,21 @@ class LocalObject {
   LocalObject(LocalObject&&) noexcept;
   LocalObject& operator=(LocalObject&&) noexcept;
 
-  /// False: a part of it hangs on to no boundary firmly (K_oo is not positive definite), and it must not be solved.
-  [[nodiscard]] bool stable() const;
   [[nodiscard]] const std::vector<TetId>& tets() const;
+  [[nodiscard]] const std::vector<NodeId>& nodes() const;     ///< ascending
   [[nodiscard]] const std::vector<NodeId>& boundary() const;  ///< b, ascending
   [[nodiscard]] const std::vector<NodeId>& interior() const;  ///< o, ascending
 
-  /// `u_boundary`: m, 3 per boundary node. Does not allocate.
-  void solve(const VectorX& u_boundary);
+  /// Assembles and factors K_oo, once. False: a part of it hangs on to no boundary firmly, and it cannot be solved.
+  [[nodiscard]] bool factor();
+  /// `u_boundary`: m, 3 per boundary node. False, and nothing changes, where it cannot be factored. Does not allocate
+  /// but for the factor, the first time.
+  [[nodiscard]] bool solve(const VectorX& u_boundary);
+  /// `u`: m, 3 per node of nodes(), in equilibrium. Does not allocate.
+  void take(const VectorX& u);
 
-  /// Of the last solve. Zero before the first.
-  [[nodiscard]] const VectorX& interior_displacement() const;    ///< m, 3 per interior node
+  /// Of the last solve, or of what was taken last. Zero before the first.
+  [[nodiscard]] const VectorX& displacement() const;             ///< m, 3 per node
   [[nodiscard]] const std::vector<TetStress>& stresses() const;  ///< per tet
   [[nodiscard]] const std::vector<Mat3>& gradients() const;      ///< grad u, per tet
 

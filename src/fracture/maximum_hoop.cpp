@@ -111,8 +111,8 @@ Judgement MaximumHoop::judge(const FrontSection& section, std::span<const TetStr
     const double angle = std::atan2(seen->above, seen->ahead);
     const Vec3 stress = in_section(point, tet.stress);
     if (counts(*seen, settings_) && hoop_of(stress, angle) >= settings_.advance_threshold)
-      out.length = std::max(out.length, seen->distance);
-    const double edges = seen->distance / settings_.mean_edge;
+      out.length = std::max(out.length, seen->distance());
+    const double edges = seen->distance() / settings_.mean_edge;
     if (edges >= kRingInner && edges <= kRingOuter) ring.add(stress, tet.volume, angle, edges);
   }
   if (ring.tets == 0) return out;

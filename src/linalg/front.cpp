@@ -28,7 +28,7 @@ class FrontMaker {
     add_elements();
     add_node_loads();
     for (const auto& [component, before] : in_.before) add_update(component, *before);
-    eliminate_pivots(f_, diagonal_, in_.null_pivot, in_.may_fork);
+    eliminate_pivots(f_, diagonal_, in_.null_pivot);
     f_.assembled.assign(diagonal_.begin() + f_.pivots, diagonal_.end());
     return front_;
   }
@@ -173,8 +173,8 @@ void FrontMaker::add_update(std::int32_t component, const Front& before) {
   std::vector<Run> runs = find_runs(before);
   const std::int32_t load = before.boundary();
   constexpr std::int32_t kForkFrom = 512;  // columns; below, it is done before a thread has come
-  if (in_.may_fork && load >= kForkFrom) {
-    parallel_ranges(static_cast<std::size_t>(load), LowerTriangle::kBlock, [&](std::size_t begin, std::size_t end) {
+  if (load >= kForkFrom) {
+    parallel_ranges(static_cast<std::size_t>(load), before.update.width(), [&](std::size_t begin, std::size_t end) {
       add_columns(before, runs, static_cast<std::int32_t>(begin), static_cast<std::int32_t>(end));
     });
   } else {

@@ -37,7 +37,7 @@ struct Front {
   std::int32_t pivots = 0;         ///< dofs of the pivots
   std::vector<Incoming> incoming;
   std::vector<std::int32_t> set_aside;  ///< the component's elements that lie wholly in kept nodes
-  Zeroed panel;                         ///< L_pp, L_bp, y^T: ld() x pivots; nothing of meaning above the diagonal
+  Block panel;                          ///< L_pp, L_bp, y^T: ld() x pivots; nothing of meaning above the diagonal
   LowerTriangle update;                 ///< U, (f_b - L_bp y)^T, e - y . y
   std::vector<double> assembled;        ///< per boundary dof, what elements have put on its diagonal so far
   double flops = 0.0;
@@ -61,14 +61,14 @@ struct FrontInput {
   std::span<const NodeKey> beyond;                            ///< nodes that fronts after it still touch, ascending
   std::span<const NodeKey> kept;                              ///< ascending
   std::vector<std::pair<std::int32_t, const Front*>> before;  ///< the fronts that hand on to it
-  double null_pivot;      ///< a pivot below this fraction of its assembled diagonal entry is rounding
-  bool may_fork = false;  ///< whether its work may be spread over threads; the bits are the same either way
+  double null_pivot;  ///< a pivot below this fraction of its assembled diagonal entry is rounding
 };
 
 /// Whether all nodes of the element that have unknowns are kept.
 [[nodiscard]] bool lies_in_kept(const ElementSource& source, const FrontLayout& layout, std::span<const NodeKey> kept,
                                 std::int32_t element);
 
+/// A large one is spread over threads; the bits do not depend on who works where.
 [[nodiscard]] std::shared_ptr<const Front> make_front(const FrontInput& input);
 
 }  // namespace rhexis::linalg

@@ -11,6 +11,10 @@ namespace {
 
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
+// Operations of a level below which it is done before a thread has come, and what a front that was not there counts.
+constexpr double kForkFrom = 5e6;
+constexpr double kSomeFlops = 1e6;
+
 }  // namespace
 
 Direction direct(const ComponentTree& tree, std::int32_t last) {
@@ -78,11 +82,16 @@ void FrontTree::Core::factor(const ElementSource& source, std::vector<char> mark
   // A front waits for those before it: levels of fronts that wait for none of the same level.
   std::vector<std::int32_t> level(marked.size(), 0);
   std::vector<std::vector<std::int32_t>> levels;
+  std::vector<double> expected_flops;  // of each level, as they were last time
   made = 0;
   for (const std::int32_t c : direction.order) {
     if (marked[at(c)] == 0) continue;
-    if (at(level[at(c)]) == levels.size()) levels.emplace_back();
+    if (at(level[at(c)]) == levels.size()) {
+      levels.emplace_back();
+      expected_flops.push_back(0.0);
+    }
     levels[at(level[at(c)])].push_back(c);
+    expected_flops[at(level[at(c)])] += front(c) != nullptr ? front(c)->flops : kSomeFlops;
     fronts[at(c)].reset();
     ++made;
     const std::int32_t to = next(c);
@@ -90,8 +99,8 @@ void FrontTree::Core::factor(const ElementSource& source, std::vector<char> mark
     marked[at(to)] = 1;
     level[at(to)] = std::max(level[at(to)], level[at(c)] + 1);
   }
-  const auto make_one = [&](std::int32_t c, bool may_fork) {
-    FrontInput input{source, layout, c, beyond(c), kept_keys, {}, null_pivot, may_fork};
+  const auto make_one = [&](std::int32_t c) {
+    FrontInput input{source, layout, c, beyond(c), kept_keys, {}, null_pivot};
     const auto take = [&](std::int32_t neighbour) {
       if (neighbour < 0 || next(neighbour) != c) return true;
       input.before.emplace_back(neighbour, front(neighbour));
@@ -101,12 +110,12 @@ void FrontTree::Core::factor(const ElementSource& source, std::vector<char> mark
     for (const std::int32_t child : tree.children[at(c)]) ready = take(child) && ready;
     if (ready) fronts[at(c)] = make_front(input);
   };
-  for (const std::vector<std::int32_t>& together : levels) {
-    // The bits do not depend on who works where: alone a front may spread its own work instead.
-    if (together.size() == 1) {
-      make_one(together.front(), true);
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    const std::vector<std::int32_t>& together = levels[l];
+    if (expected_flops[l] < kForkFrom) {
+      for (const std::int32_t c : together) make_one(c);
     } else {
-      parallel_for(together.size(), [&](std::size_t i) { make_one(together[i], false); });
+      parallel_for(together.size(), [&](std::size_t i) { make_one(together[i]); });
     }
   }
   flops = 0.0;

@@ -12,12 +12,15 @@ namespace rhexis::linalg {
 
 /// Matrices by columns; `ld` is the distance from a column to the next.
 struct FrontKernels {
-  /// Cholesky of the first `columns` rows, in place, and the rows below times L^-T. Nothing above the diagonal has a
-  /// meaning, before or after. `work`: rows x kFactorWidth. False: a pivot is not positive, or not a number.
-  bool (*factor)(double* A, int rows, int columns, int ld, double* work);
-  /// C -= A B^T; C rows x columns, A rows x depth, B columns x depth, A and B with the same ld.
-  void (*subtract_product)(double* C, int ldc, const double* A, const double* B, int ld, int rows, int columns,
-                           int depth);
+  /// Cholesky of the lower triangle of A, columns squared, in place. Nothing above the diagonal has a meaning, before
+  /// or after. `inverse`: kFactorWidth x columns rounded up to its multiple, L^-T of each narrow block of the diagonal
+  /// beside one another, for solve_rows. `work`: as there, for `columns` rows. False: a pivot is not positive, or not a
+  /// number.
+  bool (*factor)(double* A, int columns, int ld, double* inverse, double* work);
+  /// B = B L^-T; B rows x columns, with the same ld as L. `work`: rows x kFactorWidth.
+  void (*solve_rows)(double* B, int rows, const double* L, const double* inverse, int columns, int ld, double* work);
+  /// C -= A B^T on and below the diagonal, where B is the first `columns` rows of A: C rows x columns, A rows x depth.
+  void (*subtract_lower)(double* C, int ldc, const double* A, int ld, int rows, int columns, int depth);
   /// r over the pivots and the boundary below them: r_p = L_pp^-1 r_p, then r_b -= L_bp r_p.
   void (*forward)(const double* L, int ld, int pivots, int boundary, double* r, int ldr, int columns);
   /// x_p = L_pp^-T (x_p - L_bp^T x_b); x over the pivots and the boundary below them.

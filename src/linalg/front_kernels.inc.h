@@ -13,6 +13,9 @@
 #define RHEXIS_JOIN_NAMES(a, b) a##_##b
 #define RHEXIS_JOIN(a, b) RHEXIS_JOIN_NAMES(a, b)
 #define Eigen RHEXIS_JOIN(Eigen_fronts, RHEXIS_SIMD_NAMESPACE)
+// Bytes of the copies that a product packs its factors into, up to which they lie on the stack. From malloc they would
+// be fresh pages of the system in every product. No kernel calls anything that takes another such piece.
+#define EIGEN_STACK_ALLOCATION_LIMIT (2 << 20)
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
@@ -32,15 +35,30 @@ void subtract_product(double* C, int ldc, const double* A, const double* B, int 
   Matrix(C, rows, columns, Eigen::OuterStride<>(ldc)).noalias() -= a * b.transpose();
 }
 
+// Width of the strips that a product on and below a diagonal is cut into: what lies above in each is worked out in
+// vain.
+constexpr int kStrip = 2 * kFactorWidth;
+
+void subtract_lower(double* C, int ldc, const double* A, int ld, int rows, int columns, int depth) {
+  for (int j = 0; j < columns; j += kStrip) {
+    const int count = columns - j < kStrip ? columns - j : kStrip;
+    subtract_product(C + static_cast<std::ptrdiff_t>(j) * ldc + j, ldc, A + j, A + j, ld, columns - j, count, depth);
+  }
+  subtract_product(C + columns, ldc, A + columns, A, ld, rows - columns, columns, depth);
+}
+
 using Narrow = Eigen::Matrix<double, kFactorWidth, kFactorWidth>;
 
-/// Few columns: L in place, R = L^-T, and the rows below times R, a product where a solve would go column by column.
+/// Columns of the left half, in whole narrow blocks.
+int half_of(int columns) { return (columns / 2 + kFactorWidth - 1) / kFactorWidth * kFactorWidth; }
+
 /// On copies of fixed size, whose columns are a few registers; unused rows and columns are those of the identity.
-bool factor_narrow(double* A, int rows, int columns, int ld, double* work) {
-  Matrix given(A, rows, columns, Eigen::OuterStride<>(ld));
+bool factor_narrow(double* A, int columns, int ld, double* inverse) {
+  Matrix given(A, columns, columns, Eigen::OuterStride<>(ld));
   Narrow L = Narrow::Identity();
   for (int j = 0; j < columns; ++j) L.col(j).segment(j, columns - j) = given.col(j).segment(j, columns - j);
-  Narrow R = Narrow::Identity();
+  Eigen::Map<Narrow> R(inverse);
+  R.setIdentity();
   for (int j = 0; j < columns; ++j) {
     const double pivot = L(j, j);
     if (!(pivot > 0.0)) return false;  // nor is NaN
@@ -54,27 +72,35 @@ bool factor_narrow(double* A, int rows, int columns, int ld, double* work) {
     }
   }
   for (int j = 0; j < columns; ++j) given.col(j).segment(j, columns - j) = L.col(j).segment(j, columns - j);
-  const int below = rows - columns;
-  if (below == 0) return true;
-  Matrix copy(work, below, columns, Eigen::OuterStride<>(below));
-  copy = given.bottomRows(below);
-  given.bottomRows(below).noalias() = copy * R.topLeftCorner(columns, columns);
   return true;
 }
 
 /// Left half, its effect on the right half, right half: all but narrow blocks is in products.
-bool factor(double* A, int rows, int columns, int ld, double* work) {
-  if (columns <= kFactorWidth) return factor_narrow(A, rows, columns, ld, work);
-  const int left = (columns / 2 + kFactorWidth - 1) / kFactorWidth * kFactorWidth;
-  if (!factor(A, rows, left, ld, work)) return false;
-  double* const right = A + static_cast<std::ptrdiff_t>(left) * ld + left;
-  // By blocks of columns, since nothing above the diagonal is needed.
-  constexpr int kBlock = 2 * kFactorWidth;
-  for (int j = left; j < columns; j += kBlock) {
-    const int count = columns - j < kBlock ? columns - j : kBlock;
-    subtract_product(A + static_cast<std::ptrdiff_t>(j) * ld + j, ld, A + j, A + j, ld, rows - j, count, left);
+void solve_rows(double* B, int rows, const double* L, const double* inverse, int columns, int ld, double* work) {
+  if (rows == 0) return;
+  if (columns <= kFactorWidth) {
+    const ConstMatrix R(inverse, columns, columns, Eigen::OuterStride<>(kFactorWidth));
+    Matrix solved(B, rows, columns, Eigen::OuterStride<>(ld));
+    Matrix copy(work, rows, columns, Eigen::OuterStride<>(rows));
+    copy = solved;
+    solved.noalias() = copy * R;
+    return;
   }
-  return factor(right, rows - left, columns - left, ld, work);
+  const int left = half_of(columns);
+  const std::ptrdiff_t right = static_cast<std::ptrdiff_t>(left) * ld;
+  solve_rows(B, rows, L, inverse, left, ld, work);
+  subtract_product(B + right, ld, B, L + left, ld, rows, columns - left, left);
+  solve_rows(B + right, rows, L + right + left, inverse + left * kFactorWidth, columns - left, ld, work);
+}
+
+bool factor(double* A, int columns, int ld, double* inverse, double* work) {
+  if (columns <= kFactorWidth) return factor_narrow(A, columns, ld, inverse);
+  const int left = half_of(columns);
+  if (!factor(A, left, ld, inverse, work)) return false;
+  solve_rows(A + left, columns - left, A, inverse, left, ld, work);
+  double* const right = A + static_cast<std::ptrdiff_t>(left) * ld + left;
+  subtract_lower(right, ld, A + left, ld, columns - left, columns - left, left);
+  return factor(right, columns - left, ld, inverse + left * kFactorWidth, work);
 }
 
 void forward(const double* L, int ld, int pivots, int boundary, double* r, int ldr, int columns) {
@@ -101,6 +127,6 @@ void add(double* to, const double* from, int count) {
 
 }  // namespace
 
-FrontKernels make_front_kernels() { return {factor, subtract_product, forward, backward, add}; }
+FrontKernels make_front_kernels() { return {factor, solve_rows, subtract_lower, forward, backward, add}; }
 
 }  // namespace rhexis::linalg::RHEXIS_SIMD_NAMESPACE

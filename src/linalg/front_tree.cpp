@@ -17,17 +17,17 @@ std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 // not draw it away from the crack.
 constexpr std::size_t kFewNodes = 16;
 
-/// The component in the middle of what changed, or, where no element did, of the kept nodes: most lies neither below
-/// any one child of it, nor above. Nodes that are always kept have no place. `otherwise` when there is nothing.
-std::int32_t middle_of(const FrontLayout& layout, const std::vector<std::int32_t>& touched,
-                       const std::vector<std::int32_t>& kept, std::int32_t otherwise) {
+/// The component in the middle of the nodes, or else of the components: most lies neither below any one child of it,
+/// nor above. Nodes that are always kept have no place. `otherwise` when there is nothing.
+std::int32_t middle_of(const FrontLayout& layout, std::span<const std::int32_t> nodes,
+                       const std::vector<std::int32_t>& components, std::int32_t otherwise) {
   const ComponentTree& tree = layout.tree();
   std::vector<std::int32_t> count(at(tree.size()), 0);
-  for (const std::int32_t component : touched) ++count[at(component)];
-  if (touched.empty() && kept.size() > kFewNodes) {
-    for (const std::int32_t node : kept) {
-      if (layout.home(node) >= 0) ++count[at(layout.home(node))];
-    }
+  for (const std::int32_t node : nodes) {
+    if (layout.home(node) >= 0) ++count[at(layout.home(node))];
+  }
+  if (nodes.empty()) {
+    for (const std::int32_t component : components) ++count[at(component)];
   }
   count[at(tree.root())] = 0;
   for (std::int32_t c = 0; c < tree.root(); ++c) count[at(tree.parent[at(c)])] += count[at(c)];
@@ -72,11 +72,12 @@ FrontTree::FrontTree(std::unique_ptr<const Core> core) : core_(std::move(core)) 
 FrontTree::~FrontTree() = default;
 
 std::shared_ptr<const FrontTree> FrontTree::make(const ElementSource& elements, const std::vector<std::int32_t>& kept,
-                                                 std::span<const std::int32_t> weight) {
+                                                 std::span<const std::int32_t> weight,
+                                                 std::span<const std::int32_t> next) {
   auto core = std::make_unique<Core>(FrontLayout(elements, kept, weight));
   core->null_pivot = null_pivot(3 * elements.node_count());
   core->set_kept(kept);
-  core->direction = direct(core->layout.tree(), core->layout.tree().root());
+  core->direction = direct(core->layout.tree(), middle_of(core->layout, next, {}, core->layout.tree().root()));
   core->fronts.resize(at(core->layout.tree().size()));
   core->factor(elements, std::vector<char>(core->fronts.size(), 1));
   return std::shared_ptr<const FrontTree>(new FrontTree(std::move(core)));
@@ -90,7 +91,15 @@ std::shared_ptr<const FrontTree> FrontTree::updated(const ElementSource& element
   const LayoutChange moves = core->layout.apply(elements, change);
   core->set_kept(change.kept);
   const ComponentTree& tree = core->layout.tree();
-  const std::int32_t last = middle_of(core->layout, moves.touched, core->kept, old.direction.last);
+  std::int32_t last = old.direction.last;
+  if (!moves.touched.empty()) {
+    // As near to the next change as it can come among the fronts that this one makes anew in any case.
+    const std::vector<std::int32_t> made = old.paths_from(moves.touched);
+    last = middle_of(core->layout, change.next, moves.touched, last);
+    while (std::find(made.begin(), made.end(), last) == made.end()) last = old.next(last);
+  } else if (core->kept.size() > kFewNodes) {
+    last = middle_of(core->layout, core->kept, {}, last);
+  }
   core->direction = last == old.direction.last ? old.direction : direct(tree, last);
 
   std::vector<char> marked(core->fronts.size(), 0);

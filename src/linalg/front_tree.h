@@ -49,6 +49,8 @@ struct ElementChange {
   std::vector<std::int32_t> copied;   ///< parent of each appended node
   std::vector<std::int32_t> touched;  ///< elements that came, went, moved or took other nodes
   std::vector<std::int32_t> kept;     ///< the nodes to keep from now on (all of them, ascending)
+  /// Nodes about which the next change is expected; empty: where this one was. A guess costs time, not accuracy.
+  std::vector<std::int32_t> next;
 };
 
 /// What is not a number counts as not positive definite.
@@ -60,9 +62,11 @@ class FrontTree {
   /// every later version; what is kept only for a time is named in ElementChange::kept. A node without an active
   /// element is left out. `weight`, per node (empty: all 1): how dear the node is in a separator. An update is dear
   /// when what changes lies along a large separator, cheap when it lies across: nodes where changes will come get more.
+  /// `next`: as of ElementChange.
   [[nodiscard]] static std::shared_ptr<const FrontTree> make(const ElementSource& elements,
                                                              const std::vector<std::int32_t>& kept,
-                                                             std::span<const std::int32_t> weight = {});
+                                                             std::span<const std::int32_t> weight = {},
+                                                             std::span<const std::int32_t> next = {});
   /// The next version. `elements` as after the change.
   [[nodiscard]] std::shared_ptr<const FrontTree> updated(const ElementSource& elements,
                                                          const ElementChange& change) const;

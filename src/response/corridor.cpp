@@ -46,4 +46,19 @@ std::vector<std::int32_t> separator_weights(const mesh::TornMesh& body, std::spa
   return out;
 }
 
+std::vector<std::int32_t> nodes_ahead(const mesh::TornMesh& body, std::span<const Focus> focus) {
+  std::vector<std::int32_t> out;
+  for (std::size_t i = 0; i < body.mesh().node_count(); ++i) {
+    const bool ahead = std::any_of(focus.begin(), focus.end(), [&](const Focus& each) {
+      const Vec3 from = body.mesh().nodes[i] - each.centre;
+      const double along = from.dot(each.direction);
+      const double aside = std::max(0.0, std::abs(from.dot(each.tangent)) - each.half_length);
+      const Vec3 in_plane = from - from.dot(each.tangent) * each.tangent;
+      return along > 0.0 && std::hypot(in_plane.norm(), aside) <= 0.5 * each.radius;
+    });
+    if (ahead) out.push_back(static_cast<std::int32_t>(i));
+  }
+  return out;
+}
+
 }  // namespace rhexis::response

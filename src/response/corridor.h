@@ -21,4 +21,8 @@ inline constexpr std::int32_t kCorridorWeight = 5;
 /// Per node of the body; 1 outside.
 [[nodiscard]] std::vector<std::int32_t> separator_weights(const mesh::TornMesh& body, std::span<const Focus> focus);
 
+/// Nodes ahead of the fronts, ascending, where the next edits will be: within half the radius of the local object. A
+/// front whose direction is not known has none.
+[[nodiscard]] std::vector<std::int32_t> nodes_ahead(const mesh::TornMesh& body, std::span<const Focus> focus);
+
 }  // namespace rhexis::response

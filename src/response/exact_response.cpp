@@ -52,7 +52,8 @@ ExactResponse::~ExactResponse() = default;
 std::unique_ptr<ExactResponse> ExactResponse::make(const mesh::TornMesh& mesh, ExactSettings settings,
                                                    std::span<const Focus> focus) {
   std::unique_ptr<ExactResponse> out(new ExactResponse(mesh, std::move(settings)));
-  Tree tree = linalg::FrontTree::make(ElasticElements(mesh, out->model_), {}, separator_weights(mesh, focus));
+  Tree tree = linalg::FrontTree::make(ElasticElements(mesh, out->model_), {}, separator_weights(mesh, focus),
+                                      nodes_ahead(mesh, focus));
   out->whole_flops_ = tree->flops_made();
   if (!out->adopt(std::move(tree))) return nullptr;
   out->energy_at_first_ = out->potential_energy({});
@@ -73,9 +74,10 @@ void ExactResponse::grasp(std::span<const NodeId> nodes) {
 FollowReport ExactResponse::follow(const mesh::MeshEdit& edit, std::span<const Focus> focus) {
   const Stopwatch watch;
   FollowReport report;
-  Tree next = take_up(edit, report);
+  Tree next = take_up(edit, focus, report);
   if (!next) {
     linalg::ElementChange change;
+    change.next = nodes_ahead(mesh_, focus);
     add_applied(mesh_, edit, change);
     next = tree_->updated(ElasticElements(mesh_, model_), change);
   }
@@ -94,7 +96,7 @@ FollowReport ExactResponse::follow(const mesh::MeshEdit& edit, std::span<const F
   return report;
 }
 
-FollowReport ExactResponse::go_back(const mesh::MeshEdit& edit, std::span<const Focus> /*focus*/) {
+FollowReport ExactResponse::go_back(const mesh::MeshEdit& edit, std::span<const Focus> focus) {
   const Stopwatch watch;
   FollowReport report;
   if (preparation_) {
@@ -103,6 +105,7 @@ FollowReport ExactResponse::go_back(const mesh::MeshEdit& edit, std::span<const 
     preparation_->mirror.undo();
   }
   linalg::ElementChange change;
+  change.next = nodes_ahead(mesh_, focus);
   add_taken_back(mesh_, edit, change);
   report.ok = adopt(tree_->updated(ElasticElements(mesh_, model_), change));
   RHEXIS_CHECK(report.ok, "the body before the edit was stable");
@@ -113,11 +116,13 @@ FollowReport ExactResponse::go_back(const mesh::MeshEdit& edit, std::span<const 
 
 /// The factor that was made in the background, with the edits since. It is due when the caller has done as many
 /// operations in the meantime: by then it is ready, mostly.
-ExactResponse::Tree ExactResponse::take_up(const mesh::MeshEdit& edit, FollowReport& report) {
+ExactResponse::Tree ExactResponse::take_up(const mesh::MeshEdit& edit, std::span<const Focus> focus,
+                                           FollowReport& report) {
   if (!preparation_ || !preparation_->task.under_way() ||
       preparation_->spent_flops < settings_.refresh_after * whole_flops_)
     return nullptr;
   linalg::ElementChange since;
+  since.next = nodes_ahead(mesh_, focus);
   for (const mesh::MeshEdit& each : preparation_->edits) add_applied(mesh_, each, since);
   add_applied(mesh_, edit, since);
   Tree made;
@@ -136,7 +141,8 @@ void ExactResponse::prepare(std::span<const Focus> focus) {
   preparation_->spent_flops = 0.0;
   preparation_->task.start([this, where = std::vector<Focus>(focus.begin(), focus.end())] {
     const mesh::TornMesh& mirror = preparation_->mirror;
-    preparation_->made = linalg::FrontTree::make(ElasticElements(mirror, model_), {}, separator_weights(mirror, where));
+    preparation_->made = linalg::FrontTree::make(ElasticElements(mirror, model_), {}, separator_weights(mirror, where),
+                                                 nodes_ahead(mirror, where));
   });
 }
 
@@ -208,7 +214,11 @@ void ExactResponse::displacement(std::span<const NodeId> nodes, const VectorX& h
     known_.nodes.assign(nodes.begin(), nodes.end());
     known_.force.resize(held_forces.size(), 0);
     known_.moved.resize(static_cast<Eigen::Index>(3 * nodes.size()), 0);
-    solve_at(nodes, VectorX::Zero(held_forces.size()), 1.0, known_.rest);
+    if (tree_->load_energy() > 0.0) {
+      solve_at(nodes, VectorX::Zero(held_forces.size()), 1.0, known_.rest);
+    } else {  // y . y = 0: no loads, and no support moves
+      known_.rest.setZero(static_cast<Eigen::Index>(3 * nodes.size()));
+    }
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       if (is_in_solve(nodes[i])) known_.rest.segment<3>(static_cast<Eigen::Index>(3 * i)) += prescribed(nodes[i]);
     }

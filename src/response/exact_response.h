@@ -65,7 +65,7 @@ class ExactResponse final : public Response {
   };
 
   ExactResponse(const mesh::TornMesh& mesh, ExactSettings settings);
-  Tree take_up(const mesh::MeshEdit& edit, FollowReport& report);
+  Tree take_up(const mesh::MeshEdit& edit, std::span<const Focus> focus, FollowReport& report);
   void prepare(std::span<const Focus> focus);
   bool adopt(Tree next);
   void solve_held();

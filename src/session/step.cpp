@@ -61,7 +61,6 @@ std::optional<TearSession::Judged> TearSession::judge(std::size_t crack) const {
   const auto running = std::find(running_.begin(), running_.end(), crack);
   if (running == running_.end()) return std::nullopt;
   const fracture::LocalObject& local = local_[static_cast<std::size_t>(running - running_.begin())];
-  if (!local.stable()) return std::nullopt;
   const fracture::Crack& front = cracks_[crack];
   std::vector<fracture::Judgement> judgements =
       fracture::judge_front(*criterion_, front, mean_edge(), local.stresses());

@@ -139,9 +139,8 @@ void TearSession::make_local_objects() {
 void TearSession::solve_local_objects() {
   VectorX u;
   for (fracture::LocalObject& local : local_) {
-    if (!local.stable()) continue;
-    response_->displacement(local.boundary(), hand_.nodal_forces(), u);
-    local.solve(u);
+    response_->displacement(local.nodes(), hand_.nodal_forces(), u);
+    local.take(u);
   }
 }
 

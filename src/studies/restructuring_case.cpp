@@ -51,17 +51,18 @@ class RestructuringCase::Follower {
   [[nodiscard]] std::optional<FullSolveSeconds> sparse() const { return time_sparse_factor(body_, elastic_); }
   [[nodiscard]] std::optional<FullSolveSeconds> dense() const { return time_dense_inverse(body_, elastic_); }
 
-  /// s, of finding the tets of the local object after an advance, and making it.
-  [[nodiscard]] double local_object(const session::AdvanceRecord& after, double radius,
-                                    std::span<const NodeId> hand) const {
+  /// s, of finding the tets of the local object after an advance, and factoring it; empty: it is not stable.
+  [[nodiscard]] std::optional<double> local_object(const session::AdvanceRecord& after, double radius,
+                                                   std::span<const NodeId> hand) const {
     fracture::Crack crack;
     for (const Vec3& at : after.front_after) crack.front.push_back({.position = at});
     std::vector<std::uint8_t> supported(body_.mesh().node_count(), 0);
     for (const model::PrescribedDof& support : elastic_.supports)
       supported[static_cast<std::size_t>(support.dof / 3)] = 1;
     const Stopwatch watch;
-    const fracture::LocalObject local(body_, elastic_.elastic, surroundings_.tets_near(body_, crack, radius), supported,
-                                      hand);
+    fracture::LocalObject local(body_, elastic_.elastic, surroundings_.tets_near(body_, crack, radius), supported,
+                                hand);
+    if (!local.factor()) return std::nullopt;
     return watch.seconds();
   }
 
@@ -105,9 +106,15 @@ void RestructuringCase::keep_exact(std::string_view way, const TornOn& torn, std
 Expected<void> RestructuringCase::follow(Follower& follower, const TornOn& torn, std::size_t advance) {
   const session::AdvanceRecord& record = torn.advances()[advance].record;
   Restructured what{.advance = advance, .tets = record.tets_removed, .length = record.length};
+  const auto unstable = [&] {
+    return fail(
+        fmt::format("the plate of {} nodes is not stable after advance {}", plate_.mesh.node_count(), advance + 1));
+  };
   if (wants("local") && !record.finished) {
+    const std::optional<double> local = follower.local_object(record, torn.local_radius(record), torn.hand_nodes());
+    if (!local) return unstable();
     what.remesh = record.remesh_seconds;
-    what.local = follower.local_object(record, torn.local_radius(record), torn.hand_nodes());
+    what.local = *local;
     what.seconds = what.remesh + what.local;
     keep("local", what);
     what.remesh = what.local = Restructured::kNone;
@@ -117,9 +124,7 @@ Expected<void> RestructuringCase::follow(Follower& follower, const TornOn& torn,
     if (!wants(way) || !is_due(way, advance)) continue;
     if (dense && plate_.mesh.node_count() > static_cast<std::size_t>(kDenseNodes)) continue;
     const std::optional<FullSolveSeconds> full = dense ? follower.dense() : follower.sparse();
-    if (!full)
-      return fail(
-          fmt::format("the plate of {} nodes is not stable after advance {}", plate_.mesh.node_count(), advance + 1));
+    if (!full) return unstable();
     what.assembly = full->assembly;
     what.analysis = dense ? Restructured::kNone : full->analysis;
     what.factor = full->factor;

@@ -289,6 +289,29 @@ TEST(OneTetCriteria, DifferInTheirValue) {
   EXPECT_NEAR(value("von-mises"), std::sqrt(0.5 * (16.0 + 9.0 + 49.0)), 1e-14);
 }
 
+TEST(OneTetCriteria, LeaveOutNoTetThatDecides) {
+  // One tet by itself is worked out in any case.
+  for (const std::string_view name : {"maximum-principal", "maximum-shear", "von-mises"}) {
+    for (std::uint64_t seed = 1; seed < 20; ++seed) {
+      const std::vector<TetStress> tets = mixed_tip(seed);
+      const auto criterion = make(name, settings_with(1e4, 5e3));
+      Judgement most;
+      double length = 0.0;
+      for (const TetStress& tet : tets) {
+        const Judgement alone = criterion->judge({}, std::span(&tet, 1));
+        if (alone.value > most.value) most = alone;
+        length = std::max(length, alone.length);
+      }
+      const Judgement all = criterion->judge({}, tets);
+      EXPECT_EQ(all.tet, most.tet);
+      EXPECT_EQ(all.value, most.value);
+      EXPECT_EQ(all.direction, most.direction);
+      EXPECT_EQ(all.length, length);
+      EXPECT_GT(length, 0.0);
+    }
+  }
+}
+
 /// Erdogan and Sih: K_I sin t + K_II (3 cos t - 1) = 0, in degrees.
 double erdogan_sih(double K_I, double K_II) {
   if (K_II == 0.0) return 0.0;

@@ -40,7 +40,9 @@ TEST_P(FrontKernelsOf, factor_like_the_dense_factor) {
       MatrixXd panel = MatrixXd::Constant(ld, columns, std::numeric_limits<double>::quiet_NaN());
       for (int j = 0; j < columns; ++j) panel.col(j).segment(j, rows - j) = whole.col(j).tail(rows - j);
       std::vector<double> work(static_cast<std::size_t>(rows) * kFactorWidth);
-      ASSERT_TRUE(kernels->factor(panel.data(), rows, columns, ld, work.data()));
+      std::vector<double> inverse(static_cast<std::size_t>(columns + kFactorWidth) * kFactorWidth);
+      ASSERT_TRUE(kernels->factor(panel.data(), columns, ld, inverse.data(), work.data()));
+      kernels->solve_rows(panel.data() + columns, below, panel.data(), inverse.data(), columns, ld, work.data());
       const MatrixXd expected = whole.llt().matrixL();
       for (int j = 0; j < columns; ++j) {
         EXPECT_LT((panel.col(j).segment(j, rows - j) - expected.col(j).tail(rows - j)).norm(), kSame * rows)
@@ -71,7 +73,8 @@ TEST_P(FrontKernelsOf, refuse_what_is_not_positive_definite_or_not_a_number) {
       MatrixXd A = 2.0 * MatrixXd::Identity(100, 100);
       A(place, place) = bad;
       std::vector<double> work(100 * kFactorWidth);
-      EXPECT_FALSE(kernels->factor(A.data(), 100, 100, 100, work.data())) << bad << " at " << place;
+      std::vector<double> inverse(128 * kFactorWidth);
+      EXPECT_FALSE(kernels->factor(A.data(), 100, 100, inverse.data(), work.data())) << bad << " at " << place;
     }
   }
 }
@@ -79,11 +82,15 @@ TEST_P(FrontKernelsOf, refuse_what_is_not_positive_definite_or_not_a_number) {
 TEST_P(FrontKernelsOf, subtract_products_and_add) {
   std::mt19937_64 random(2);
   for (const int depth : {1, 40, 300}) {
-    const MatrixXd A = random_matrix(150, depth, random);
-    MatrixXd C = random_matrix(120, 64, random);
-    const MatrixXd expected = C - A.bottomRows(120) * A.middleRows(10, 64).transpose();
-    kernels->subtract_product(C.data(), 120, A.data() + 30, A.data() + 10, 150, 120, 64, depth);
-    EXPECT_LT((C - expected).norm(), 64.0 * kSame * depth);
+    for (const int columns : {1, 64, 100}) {
+      const MatrixXd A = random_matrix(150, depth, random);
+      MatrixXd C = random_matrix(130, columns, random);
+      const MatrixXd expected = C.topRows(120) - A.bottomRows(120) * A.middleRows(30, columns).transpose();
+      kernels->subtract_lower(C.data(), 130, A.data() + 30, 150, 120, columns, depth);
+      for (int j = 0; j < columns; ++j) {
+        EXPECT_LT((C.col(j).segment(j, 120 - j) - expected.col(j).tail(120 - j)).norm(), 8.0 * kSame * depth);
+      }
+    }
   }
   VectorXd a = random_matrix(37, 1, random);
   const VectorXd b = random_matrix(37, 1, random);

@@ -45,6 +45,22 @@ TEST(Corridor, IsARodWhereThePlaneIsNotKnownAndNothingWithoutADirection) {
   EXPECT_EQ(heavy(focus), 0);
 }
 
+TEST(Corridor, AheadOfTheFrontComesTheNextEdit) {
+  const TornCase body = plate_case(3000);
+  const mesh::TornMesh& mesh = body.cut.body;
+  Focus focus{{0.117, 0.06, 0.005}, Vec3::UnitY(), 0.005, 4.0 * body.edge(), Vec3::UnitZ()};
+  const std::vector<std::int32_t> ahead = nodes_ahead(mesh, std::span(&focus, 1));
+  ASSERT_GT(ahead.size(), 5U);
+  for (std::size_t i = 0; i < mesh.mesh().node_count(); ++i) {
+    const Vec3 from = mesh.mesh().nodes[i] - focus.centre;
+    EXPECT_EQ(std::binary_search(ahead.begin(), ahead.end(), static_cast<std::int32_t>(i)),
+              from.y() > 0.0 && from.head<2>().norm() <= 2.0 * body.edge())
+        << i;
+  }
+  focus.direction.setZero();
+  EXPECT_TRUE(nodes_ahead(mesh, std::span(&focus, 1)).empty());
+}
+
 TEST(Corridor, MakesTheUpdatesOfACrackThatRunsStraightCheaper) {
   const auto flops = [](bool known) {
     TornCase body = plate_case(6000);

@@ -188,10 +188,11 @@ TEST_P(EveryCriterion, TheCrackMirrorsWithTheBody) {
   for (std::size_t k = 1; k < one->advances().size(); ++k) {
     const Vec3& a = one->advances()[k].front_after.front();
     const Vec3& b = other->advances()[k].front_after.front();
-    // Rounding of the solve, through directions of principal stress, onto lengths of a tenth of a metre.
-    EXPECT_LT((Vec3(0.24 - b.x(), b.y(), b.z()) - a).head<2>().norm(), 1e-9) << k;
+    // Rounding of the solve, through directions of stress, onto lengths of a tenth of a metre, and from there into the
+    // shapes that the next advance is judged by.
+    EXPECT_LT((Vec3(0.24 - b.x(), b.y(), b.z()) - a).head<2>().norm(), 5e-9) << k;
   }
-  // Nodes apart by 1e-9 m, of edges of 1e-2 m, change shapes and with them forces by no more than their ratio.
+  // Nodes apart by some 1e-9 m, of edges of 1e-2 m, change shapes and with them forces by no more than their ratio.
   double most = 0.0;
   for (const Vec3& force : trace.force) most = std::max(most, force.norm());
   for (std::size_t k = 0; k < trace.force.size(); ++k) {
