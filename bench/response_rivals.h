@@ -40,7 +40,7 @@ class Part final : public linalg::ElementSource {
   void stiffness(std::int32_t element, linalg::ElementMatrix& out) const override { all_.stiffness(element, out); }
   void load(std::int32_t element, linalg::ElementVector& out) const override { all_.load(element, out); }
   [[nodiscard]] Vec3 node_load(std::int32_t) const override { return Vec3::Zero(); }
-  [[nodiscard]] bool is_free(std::int32_t dof) const override { return all_.is_free(dof); }
+  [[nodiscard]] unsigned free_components(std::int32_t node) const override { return all_.free_components(node); }
 
  private:
   ElasticElements all_;
@@ -94,7 +94,7 @@ class Condensed {
     for (std::size_t i = 0; i < within.size(); ++i) {
       if (within[i] != 0 && beyond[i] != 0) rim_.push_back(static_cast<std::int32_t>(i));
     }
-    outside_tree_ = outside_tree_->updated(Part(body_, model_, inside_, false), {{}, touched, rim_});
+    outside_tree_ = outside_tree_->updated(Part(body_, model_, inside_, false), {{}, touched, rim_, {}});
     inside_tree_ = FrontTree::make(Part(body_, model_, inside_, true), rim_);
   }
 
@@ -113,7 +113,8 @@ class Condensed {
       }
     }
     std::vector<double> work(dofs.size() * linalg::kFactorWidth);
-    RHEXIS_CHECK(linalg::front_kernels().factor(S.data(), n, n, n, work.data()), "not stable");
+    std::vector<double> inverse((dofs.size() + linalg::kFactorWidth) * linalg::kFactorWidth);
+    RHEXIS_CHECK(linalg::front_kernels().factor(S.data(), n, n, inverse.data(), work.data()), "not stable");
     const std::vector<std::int32_t> hand{3 * hand_.value(), 3 * hand_.value() + 1, 3 * hand_.value() + 2};
     const auto around = body_.tets_around(hand_);
     const bool is_inside = std::all_of(around.begin(), around.end(), [&](TetId t) { return inside_[t.index()] != 0; });

@@ -95,8 +95,10 @@ void FrontMaker::find_dofs() {
   for (std::size_t i = 0; i < f_.nodes.size(); ++i) {
     if (i == f_.pivot_nodes) f_.pivots = f_.size();
     first_dof_.push_back(f_.size());
-    for (std::int32_t dof = 3 * node_of(f_.nodes[i]), c = 0; c < 3; ++c, ++dof) {
-      if (in_.source.is_free(dof)) f_.dofs.push_back(dof);
+    const std::int32_t node = node_of(f_.nodes[i]);
+    const unsigned free = in_.source.free_components(node);
+    for (std::int32_t c = 0; c < 3; ++c) {
+      if ((free >> c & 1U) != 0) f_.dofs.push_back(3 * node + c);
     }
   }
   if (f_.pivot_nodes == f_.nodes.size()) f_.pivots = f_.size();
@@ -119,10 +121,9 @@ void FrontMaker::add_elements() {
     in_.source.load(element, load);
     const std::array<std::int32_t, 4> nodes = in_.source.nodes(element);
     for (std::size_t a = 0; a < 4; ++a) {
-      std::int32_t next = has_unknowns(in_.source, nodes[a]) ? first_dof(in_.layout.key(nodes[a])) : -1;
-      for (std::size_t c = 0; c < 3; ++c) {
-        at[3 * a + c] = in_.source.is_free(3 * nodes[a] + static_cast<std::int32_t>(c)) ? next++ : -1;
-      }
+      const unsigned free = in_.source.free_components(nodes[a]);
+      std::int32_t next = free != 0 ? first_dof(in_.layout.key(nodes[a])) : -1;
+      for (std::size_t c = 0; c < 3; ++c) at[3 * a + c] = (free >> c & 1U) != 0 ? next++ : -1;
     }
     for (std::size_t j = 0; j < 12; ++j) {
       const std::int32_t column = at[j];

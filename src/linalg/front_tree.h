@@ -41,7 +41,9 @@ class ElementSource {
   virtual void load(std::int32_t element, ElementVector& out) const = 0;
   /// Load at a node beside those of the elements, N.
   [[nodiscard]] virtual Vec3 node_load(std::int32_t node) const = 0;
-  [[nodiscard]] virtual bool is_free(std::int32_t dof) const = 0;  ///< false: held, and left out
+  /// Bit c: component c of the node's displacement is free; the others are held, and left out.
+  [[nodiscard]] virtual unsigned free_components(std::int32_t node) const = 0;
+  [[nodiscard]] bool is_free(std::int32_t dof) const { return (free_components(dof / 3) >> (dof % 3) & 1U) != 0; }
 };
 
 /// What has happened to the elements since the version that is updated.

@@ -79,9 +79,9 @@ Vec3 ElasticElements::node_load(std::int32_t node) const {
   return model_.body.dead_force.segment<3>(3 * Eigen::Index{node});
 }
 
-bool ElasticElements::is_free(std::int32_t dof) const {
-  const NodeId node = mesh_.original(NodeId(dof / 3));
-  return model_.held[3 * node.index() + static_cast<std::size_t>(dof % 3)] == 0;
+unsigned ElasticElements::free_components(std::int32_t node) const {
+  const std::uint8_t* const held = model_.held.data() + 3 * mesh_.original(NodeId(node)).index();
+  return (held[0] == 0 ? 1U : 0U) | (held[1] == 0 ? 2U : 0U) | (held[2] == 0 ? 4U : 0U);
 }
 
 double support_energy(const mesh::TornMesh& mesh, const ElasticModel& model) {

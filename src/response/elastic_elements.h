@@ -46,7 +46,7 @@ class ElasticElements final : public linalg::ElementSource {
   /// rho g V / 4 at each corner, minus what the prescribed displacements of the corners take: K_e u_held.
   void load(std::int32_t element, linalg::ElementVector& out) const override;
   [[nodiscard]] Vec3 node_load(std::int32_t node) const override;
-  [[nodiscard]] bool is_free(std::int32_t dof) const override;
+  [[nodiscard]] unsigned free_components(std::int32_t node) const override;
 
  private:
   const mesh::TornMesh& mesh_;

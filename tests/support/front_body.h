@@ -79,7 +79,11 @@ class FrontBody : public ElementSource {
     for (int i = 0; i < 12; ++i) out[i] = 1e-2 * scale[static_cast<std::size_t>(e)] * (i % 3 == 2 ? -1.0 : 0.25);
   }
   [[nodiscard]] Vec3 node_load(std::int32_t node) const override { return loads[static_cast<std::size_t>(node)]; }
-  [[nodiscard]] bool is_free(std::int32_t dof) const override { return free[static_cast<std::size_t>(dof)]; }
+  [[nodiscard]] unsigned free_components(std::int32_t node) const override {
+    unsigned out = 0;
+    for (unsigned c = 0; c < 3; ++c) out |= free[3 * static_cast<std::size_t>(node) + c] ? 1U << c : 0U;
+    return out;
+  }
 
   /// A copy of a node, with its supports and its load.
   std::int32_t copy_node(std::int32_t node) {
