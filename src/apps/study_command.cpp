@@ -32,19 +32,24 @@ std::string cell_text(const ordered_json& value) {
   return value.is_number_integer() ? value.dump() : "-";
 }
 
-/// Columns as wide as what stands in them.
+/// Columns as wide as what stands in them: numbers to the right, words to the left.
 void print_rows(const ordered_json& rows, const std::vector<std::string>& columns) {
   std::vector<std::size_t> width;
   for (const std::string& column : columns) {
     width.push_back(column.size());
     for (const ordered_json& row : rows) width.back() = std::max(width.back(), cell_text(row.at(column)).size());
   }
-  for (std::size_t k = 0; k < columns.size(); ++k) fmt::print("{:>{}}  ", columns[k], width[k]);
-  fmt::print("\n");
-  for (const ordered_json& row : rows) {
-    for (std::size_t k = 0; k < columns.size(); ++k) fmt::print("{:>{}}  ", cell_text(row.at(columns[k])), width[k]);
-    fmt::print("\n");
-  }
+  const auto print_line = [&](auto&& cell) {
+    std::string line;
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const bool words = rows.front().at(columns[k]).is_string();
+      line += words ? fmt::format("{:<{}}  ", cell(columns[k]), width[k])
+                    : fmt::format("{:>{}}  ", cell(columns[k]), width[k]);
+    }
+    fmt::print("{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
+  };
+  print_line([](const std::string& column) { return column; });
+  for (const ordered_json& row : rows) print_line([&](const std::string& column) { return cell_text(row.at(column)); });
 }
 
 int run(const StudyRun& study, const Common& common) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "haptics/tick_settings.h"
+
 namespace rhexis::studies {
 namespace {
 
@@ -51,21 +53,41 @@ Expected<nlohmann::ordered_json> run_live_study(const LiveOptions& options, cons
 
 result::Chart live_chart(const nlohmann::ordered_json& histograms, const std::string& title,
                          const std::vector<std::string>& names) {
+  const auto is_asked_for = [&](const nlohmann::ordered_json& bin) {
+    const auto name = bin.at("histogram").get<std::string>();
+    return std::any_of(names.begin(), names.end(), [&](const std::string& of) { return name.starts_with(of); });
+  };
+  double ground = 1.0;  // a logarithm has no zero: what is empty lies below all that is not
+  for (const nlohmann::ordered_json& bin : histograms)
+    if (is_asked_for(bin)) ground = std::min(ground, 0.5 * bin.at("part").get<double>());
   result::Chart chart;
   chart.title = title;
-  chart.subtitle = "Half-octave bins, each a step as wide as it is; empty ones are left out";
+  chart.subtitle = "Half-octave bins; one that is empty lies on the ground";
   chart.x = {.label = "time / ms", .scale = result::Scale::log};
   chart.y = {.label = "part of all", .scale = result::Scale::log};
+  chart.marks.push_back({.name = "a period of the loop", .x = {1e3 * haptics::kTickSeconds}});
   for (const nlohmann::ordered_json& bin : histograms) {
-    const auto name = bin.at("histogram").get<std::string>();
-    if (std::none_of(names.begin(), names.end(), [&](const std::string& of) { return name.starts_with(of); })) continue;
-    if (chart.series.empty() || chart.series.back().name != name) chart.series.push_back({.name = name});
+    if (!is_asked_for(bin)) continue;
     const double to = bin.at("to_ms");
-    const double from = std::max(bin.at("from_ms").get<double>(), 0.5 * to);  // a logarithm has no zero
-    for (const double edge : {from, to}) {
-      chart.series.back().x.push_back(edge);
-      chart.series.back().y.push_back(bin.at("part"));
+    const double from = std::max(bin.at("from_ms").get<double>(), 0.5 * to);  // nor has it one on the other axis
+    const auto name = bin.at("histogram").get<std::string>();
+    if (chart.series.empty() || chart.series.back().name != name)
+      chart.series.push_back({.name = name, .x = {from}, .y = {ground}});
+    result::ChartSeries& series = chart.series.back();
+    const auto add = [&](double x, double y) {
+      series.x.push_back(x);
+      series.y.push_back(y);
+    };
+    if (from > series.x.back()) {
+      add(series.x.back(), ground);
+      add(from, ground);
     }
+    add(from, bin.at("part"));
+    add(to, bin.at("part"));
+  }
+  for (result::ChartSeries& series : chart.series) {
+    series.x.push_back(series.x.back());
+    series.y.push_back(ground);
   }
   return chart;
 }

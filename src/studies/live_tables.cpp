@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -59,9 +60,12 @@ std::string circumstances(const LiveRun& run, std::uint64_t tick, std::uint64_t 
 
 class Measures {
  public:
-  void add(std::string measure, double value, std::string unit, std::string note = {}) {
-    rows_.push_back(
-        {{"measure", std::move(measure)}, {"value", value}, {"unit", std::move(unit)}, {"note", std::move(note)}});
+  /// `value`: a number.
+  void add(std::string measure, ordered_json value, std::string unit, std::string note = {}) {
+    rows_.push_back({{"measure", std::move(measure)},
+                     {"value", std::move(value)},
+                     {"unit", std::move(unit)},
+                     {"note", std::move(note)}});
   }
   /// Median, the last percent and the worst, in ms.
   void add_spread(const std::string& of, std::vector<double> values, const std::string& note) {
@@ -78,7 +82,7 @@ class Measures {
 void add_ticks(const LiveRun& run, Measures& out) {
   const haptics::TickReport& ticks = run.ticks;
   const auto due = static_cast<double>(ticks.ticks + ticks.skipped);
-  out.add("ticks", static_cast<double>(ticks.ticks), "", run.priority);
+  out.add("ticks", ticks.ticks, "", run.priority);
   out.add("ticks within 1 ms of their time", 100.0 * (1.0 - static_cast<double>(ticks.missed) / due), "%",
           fmt::format("{} later, {} of them given up", ticks.missed, ticks.skipped));
   for (const double part : {0.5, 0.99, 0.999})
@@ -129,7 +133,7 @@ ordered_json live_measures(const LiveRun& run, const Latencies& latencies) {
   std::vector<double> steps = run.steps_per_second;
   out.add("steps of the physics, median", quantile(steps, 0.5), "1/s", "of the rates of each second");
   out.add("longest step of the physics", run.longest_step, "ms");
-  out.add("advances of the crack", static_cast<double>(run.clients.front().edits), "");
+  out.add("advances of the crack", run.clients.front().edits, "");
   return out.take();
 }
 

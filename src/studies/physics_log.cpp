@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -16,13 +17,8 @@ std::int64_t processor_ns() {
   return std::int64_t{1'000'000'000} * time.tv_sec + time.tv_nsec;
 }
 
-std::string name_of(const PhysicsEvent& event) {
-  switch (event.kind) {
-    case wire::Payload::Edit: return fmt::format("an advance of the crack ({:.1f} ms)", event.milliseconds);
-    case wire::Payload::Body: return "a whole Body, after a reset or 32 edits";
-    case wire::Payload::State: return "steps and a State";
-    default: return "steps";
-  }
+std::string counted(std::size_t count, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
 }  // namespace
@@ -36,26 +32,30 @@ void PhysicsLog::take(const wire::SharedMessage& message) {
 }
 
 std::string physics_between(const std::vector<PhysicsEvent>& events, std::int64_t from, std::int64_t to) {
-  // What lies between two frames belongs to the later one.
   const auto before = [](const PhysicsEvent& event, std::int64_t time) { return event.at < time; };
-  auto event = std::lower_bound(events.begin(), events.end(), from, before);
-  auto longest = events.end();
-  std::int64_t most = 0;
-  for (; event != events.end(); ++event) {
-    const std::int64_t begin = event == events.begin() ? from : std::max(from, std::prev(event)->at);
-    if (begin >= to) break;
-    const std::int64_t shared = std::min(to, event->at) - begin;
-    if (shared < most) continue;
-    most = shared;
-    longest = event;
+  const auto first = std::lower_bound(events.begin(), events.end(), from, before);
+  if (first == events.end()) return "the physics sent nothing after it";
+  const auto last = std::min(std::lower_bound(first, events.end(), to, before), std::prev(events.end()));
+  std::size_t edits = 0, bodies = 0, states = 0;
+  double milliseconds = 0.0;
+  for (auto event = first; event <= last; ++event) {
+    edits += event->kind == wire::Payload::Edit ? 1 : 0;
+    bodies += event->kind == wire::Payload::Body ? 1 : 0;
+    states += event->kind == wire::Payload::State ? 1 : 0;
+    milliseconds += event->milliseconds;
   }
-  if (longest == events.end()) return "no frame of the physics followed";
-  std::string text = "physics: " + name_of(*longest);
-  if (longest == events.begin()) return text;
-  const PhysicsEvent& last = *std::prev(longest);
-  return text + fmt::format(", {:.1f} of {:.1f} ms on a processor",
-                            1e-6 * static_cast<double>(longest->processor - last.processor),
-                            1e-6 * static_cast<double>(longest->at - last.at));
+  std::vector<std::string> did;
+  if (edits > 0)
+    did.push_back(counted(edits, "advance", "advances") + fmt::format(" of the crack ({:.1f} ms)", milliseconds));
+  if (bodies > 0) did.push_back(counted(bodies, "whole Body", "whole Bodies"));
+  if (states > 0) did.push_back(counted(states, "State", "States"));
+  if (did.empty()) did.emplace_back("steps");
+  std::string text = fmt::format("the physics: {}", fmt::join(did, ", "));
+  if (first == events.begin()) return text;
+  const PhysicsEvent& begin = *std::prev(first);
+  return text + fmt::format("; {:.1f} of {:.1f} ms on a processor",
+                            1e-6 * static_cast<double>(last->processor - begin.processor),
+                            1e-6 * static_cast<double>(last->at - begin.at));
 }
 
 }  // namespace rhexis::studies

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "session/frame_sink.h"
@@ -31,7 +32,8 @@ class PhysicsLog final : public session::FrameSink {
   std::vector<PhysicsEvent> events_;
 };
 
-/// In words: what filled most of the time between two moments (ns), and how much of that was spent on a processor.
+/// In words: what was under way between two moments (ns), the piece of work that ends behind the second included, and
+/// how much of its time was spent on a processor.
 [[nodiscard]] std::string physics_between(const std::vector<PhysicsEvent>& events, std::int64_t from, std::int64_t to);
 
 }  // namespace rhexis::studies
