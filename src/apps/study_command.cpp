@@ -8,6 +8,7 @@
 #include "apps/command.h"
 #include "apps/interrupt.h"
 #include "apps/progress.h"
+#include "studies/live_study.h"
 #include "studies/restructuring.h"
 #include "studies/stability_map.h"
 
@@ -31,19 +32,24 @@ std::string cell_text(const ordered_json& value) {
   return value.is_number_integer() ? value.dump() : "-";
 }
 
-/// Columns as wide as what stands in them.
+/// Columns as wide as what stands in them: numbers to the right, words to the left.
 void print_rows(const ordered_json& rows, const std::vector<std::string>& columns) {
   std::vector<std::size_t> width;
   for (const std::string& column : columns) {
     width.push_back(column.size());
     for (const ordered_json& row : rows) width.back() = std::max(width.back(), cell_text(row.at(column)).size());
   }
-  for (std::size_t k = 0; k < columns.size(); ++k) fmt::print("{:>{}}  ", columns[k], width[k]);
-  fmt::print("\n");
-  for (const ordered_json& row : rows) {
-    for (std::size_t k = 0; k < columns.size(); ++k) fmt::print("{:>{}}  ", cell_text(row.at(columns[k])), width[k]);
-    fmt::print("\n");
-  }
+  const auto print_line = [&](auto&& cell) {
+    std::string line;
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const bool words = rows.front().at(columns[k]).is_string();
+      line += words ? fmt::format("{:<{}}  ", cell(columns[k]), width[k])
+                    : fmt::format("{:>{}}  ", cell(columns[k]), width[k]);
+    }
+    fmt::print("{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
+  };
+  print_line([](const std::string& column) { return column; });
+  for (const ordered_json& row : rows) print_line([&](const std::string& column) { return cell_text(row.at(column)); });
 }
 
 int run(const StudyRun& study, const Common& common) {
@@ -125,13 +131,39 @@ void add_haptic_stability(CLI::App& study, const Common& common, int& code) {
   command->callback([one, &common, &code] { code = run(*one, common); });
 }
 
+void add_live(CLI::App& study, const Common& common, int& code) {
+  CLI::App* command =
+      study.add_subcommand("live", "How punctual a live session is: haptic loop, laws, pictures of its clients");
+  command->footer("Example: rhexis study live --seconds 60 --nodes 5000");
+  auto one = std::make_shared<StudyRun>();
+  one->name = "live";
+  one->shown = {"measure", "value", "unit", "note"};
+  auto options = std::make_shared<studies::LiveOptions>();
+  command->add_option("--out", one->out, "folder for the tables and figures; out/live unless given");
+  command->add_option("--seconds", options->seconds, "to run; 600 unless given")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(1.0, 86400.0));
+  command->add_option("--nodes", options->nodes, "of the plate; 20000 unless given")->type_name("COUNT");
+  command->add_option("--clients", options->clients, "that watch; 3 unless given")
+      ->type_name("COUNT")
+      ->check(CLI::Range(1, 16));
+  command->add_option("--device", options->device, "script or emulator; emulator unless given")->type_name("NAME");
+  command->add_option("--priority", options->priority, "of the haptic loop under SCHED_FIFO; 80 unless given, 0: none")
+      ->type_name("PRIORITY")
+      ->check(CLI::Range(0, 99));
+  one->run = [options](const studies::StudyFolder& folder, const studies::Progress& progress) {
+    return studies::run_live_study(*options, folder, progress);
+  };
+  command->callback([one, &common, &code] { code = run(*one, common); });
+}
+
 }  // namespace
 
 void add_study(CLI::App& app, const Common& common, int& code) {
   CLI::App* study = app.add_subcommand("study", "The experiments of the papers, into tables and figures");
   study->footer("Example: rhexis study restructuring --out out/restructuring");
   study->require_subcommand(1);
-  for (const auto add : {add_restructuring, add_haptic_stability}) add(*study, common, code);
+  for (const auto add : {add_restructuring, add_haptic_stability, add_live}) add(*study, common, code);
 }
 
 }  // namespace rhexis::apps

@@ -32,6 +32,8 @@ struct DeviceTraits {
   int delay = 0;
   /// Its position counts from where the hand took hold, as a pointer's does. Else the loop notes where that was.
   bool counts_from_hold = false;
+  /// The hand at it is the scene's script, which takes hold by itself. Else a point is held where a page says.
+  bool follows_script = false;
 };
 
 /// Life: made, opened, read and written by one thread in turn, closed. A driver that has to load firmware or find its

@@ -18,14 +18,13 @@ std::vector<DeviceTraits> known_devices() {
 
 Expected<std::unique_ptr<Device>> make_device(const std::string& name, DeviceRequest request) {
   if (name == PointerDevice::kName) return std::make_unique<PointerDevice>();
-  if (name == EmulatorDevice::kName)
-    return std::make_unique<EmulatorDevice>(request.emulator, std::move(request.motion));
-  if (name == ScriptDevice::kName) {
-    if (request.motion.legs().empty()) return fail("device 'script' has nothing to do", "a scene with a [[pull]]");
-    return std::make_unique<ScriptDevice>(std::move(request.motion));
-  }
+  if ((name == EmulatorDevice::kName || name == ScriptDevice::kName) && request.hand == nullptr)
+    return fail(fmt::format("device '{}' has no hand that moves it", name), "a script");
+  if (name == EmulatorDevice::kName) return std::make_unique<EmulatorDevice>(request.emulator, std::move(request.hand));
+  if (name == ScriptDevice::kName) return std::make_unique<ScriptDevice>(std::move(request.hand));
   if (name == ReplayDevice::kName) {
-    if (request.readings.empty()) return fail("device 'replay' has nothing to play", "a recording");
+    if (request.readings.empty())
+      return fail("device 'replay' has nothing to play", "`rhexis replay RECORDING` plays a recording");
     return std::make_unique<ReplayDevice>(std::move(request.readings));
   }
   std::vector<std::string> names;

@@ -8,21 +8,21 @@
 
 #include "haptics/device.h"
 #include "haptics/emulator_device.h"
-#include "haptics/motion.h"
+#include "haptics/hand_path.h"
 
 namespace rhexis::haptics {
 
 /// What a device may want to know of the interaction that it is for. Each reads what concerns it.
 struct DeviceRequest {
-  Motion motion;                  ///< script: the hand's; emulator: the hand that holds it
-  std::vector<Reading> readings;  ///< replay
+  std::shared_ptr<HandPath> hand;  ///< script: the hand itself; emulator: the hand that holds it
+  std::vector<Reading> readings;   ///< replay
   EmulatorSettings emulator;
 };
 
 /// In the order of the list.
 [[nodiscard]] std::vector<DeviceTraits> known_devices();
 
-/// Not opened yet. Errors: an unknown name, with the nearest one; a script without a leg, a replay without a reading.
+/// Not opened yet. Errors: an unknown name, with the nearest one; a hand or readings that it needs and has not.
 [[nodiscard]] Expected<std::unique_ptr<Device>> make_device(const std::string& name, DeviceRequest request);
 
 }  // namespace rhexis::haptics

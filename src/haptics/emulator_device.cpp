@@ -33,19 +33,18 @@ DeviceTraits EmulatorDevice::make_traits(const EmulatorSettings& settings) {
   traits.resolution = settings.resolution;
   traits.max_force = settings.max_force;
   traits.delay = settings.delay;
+  traits.follows_script = true;
   return traits;
 }
 
-EmulatorDevice::EmulatorDevice(const EmulatorSettings& settings, Motion motion)
-    : settings_(settings), traits_(make_traits(settings)), motion_(std::move(motion)) {
+EmulatorDevice::EmulatorDevice(const EmulatorSettings& settings, std::shared_ptr<HandPath> hand)
+    : settings_(settings), traits_(make_traits(settings)), hand_(std::move(hand)) {
   Mat3 rate = Mat3::Zero();
   rate(0, 1) = kTickSeconds;
   rate(1, 0) = -kTickSeconds * settings.hand_stiffness / settings.mass;
   rate(1, 1) = -kTickSeconds * (settings.damping + settings.hand_damping) / settings.mass;
   rate(1, 2) = kTickSeconds / settings.mass;
   if (rate.allFinite()) over_tick_ = exponential(rate).topRows<2>();  // else open() refuses
-  position_ = settings.start;
-  written_.fill(Vec3::Zero());
 }
 
 Expected<void> EmulatorDevice::open() {
@@ -57,12 +56,25 @@ Expected<void> EmulatorDevice::open() {
   if (s.delay < 0 || s.delay > kMostDelay)
     return fail(fmt::format("an emulated delay of {} ticks", s.delay), fmt::format("0 to {}", kMostDelay));
   is_open_ = true;
+  tick_ = 0;
+  hand_at_.setZero();
+  hold_ = 0;
+  position_ = s.start;
+  velocity_.setZero();
+  written_.fill(Vec3::Zero());
+  taken_ = 0.0;
   return {};
 }
 
 void EmulatorDevice::move_on() noexcept {
-  const Vec3 from = motion_.at(tick_).position;
-  const Vec3 to = motion_.at(tick_ + 1).position;
+  const HandPlace place = hand_->at(tick_ + 1);
+  if (place.hold != 0 && place.hold != hold_) {
+    hold_begin_ = hand_at_;
+    hold_ = place.hold;
+  }
+  const Vec3 from = hand_at_;
+  const Vec3 to = place.hold != 0 ? Vec3(hold_begin_ + place.position) : from;
+  hand_at_ = to;
   const Vec3 speed = (to - from) / kTickSeconds;
   const std::uint64_t sent = tick_ - static_cast<std::uint64_t>(settings_.delay);
   const bool has_come = tick_ >= static_cast<std::uint64_t>(settings_.delay);

@@ -1,6 +1,6 @@
 #pragma once
 
-/// A device and the hand at it, emulated: a mass with friction, held by a spring and a damper that follow a motion. It
+/// A device and the hand at it, emulated: a mass with friction, held by a spring and a damper that follow a path. It
 /// takes the force, so that the loop is closed and its stability can be tested without a machine.
 ///
 ///     m x'' = F - b x' + k_h (h - x) + b_h (h' - x')      F: the force written, constant over a tick, `delay` ticks
@@ -10,11 +10,12 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include <Eigen/Core>
 
 #include "haptics/device.h"
-#include "haptics/motion.h"
+#include "haptics/hand_path.h"
 
 namespace rhexis::haptics {
 
@@ -28,6 +29,9 @@ struct EmulatorSettings {
   double resolution = 6e-5;      ///< m, of the position that is read; 0: exact
   double max_force = 8.9;        ///< N, what it can give; more is cut
   Vec3 start = Vec3::Zero();     ///< m, where it is in tick 0
+
+  /// In a hand that means to pull: a firm one.
+  [[nodiscard]] static EmulatorSettings firmly_held() { return {.hand_stiffness = 500.0, .hand_damping = 10.0}; }
 };
 
 class EmulatorDevice final : public Device {
@@ -35,11 +39,12 @@ class EmulatorDevice final : public Device {
   static constexpr const char* kName = "emulator";
   static DeviceTraits make_traits(const EmulatorSettings& settings);
 
-  /// `motion`: of the hand.
-  EmulatorDevice(const EmulatorSettings& settings, Motion motion);
+  /// The hand is at 0 first, and stays where it is while its path holds nothing; a new hold begins there.
+  EmulatorDevice(const EmulatorSettings& settings, std::shared_ptr<HandPath> hand);
 
   [[nodiscard]] const DeviceTraits& traits() const override { return traits_; }
-  /// Errors: a mass that is not positive, a negative spring, damper or resolution, a delay out of range.
+  /// From tick 0, at the start. Errors: a mass that is not positive, a negative spring, damper or resolution, a delay
+  /// out of range.
   Expected<void> open() override;
   /// Moves on by the ticks since the last reading. Not present when not open.
   Reading read(std::uint64_t tick) noexcept override;
@@ -56,10 +61,13 @@ class EmulatorDevice final : public Device {
 
   EmulatorSettings settings_;
   DeviceTraits traits_;
-  Motion motion_;
+  std::shared_ptr<HandPath> hand_;
   bool is_open_ = false;
   Eigen::Matrix<double, 2, 3> over_tick_;  ///< (x - h, x' - h') after a tick from those before it and a force of 1 N
   std::uint64_t tick_ = 0;
+  Vec3 hand_at_ = Vec3::Zero();     ///< m
+  Vec3 hold_begin_ = Vec3::Zero();  ///< m, of the hand
+  std::uint32_t hold_ = 0;          ///< the last
   Vec3 position_ = Vec3::Zero();
   Vec3 velocity_ = Vec3::Zero();
   std::array<Vec3, kMostDelay + 1> written_;  ///< forces of the last ticks

@@ -23,19 +23,18 @@ Motion::Motion(std::vector<Leg> legs) : legs_(std::move(legs)) {
     end += moving_.back() + ticks_of(leg.hold);
     ends_.push_back(end);
     from_.push_back(from);
-    from = leg.lets_go ? Vec3(Vec3::Zero()) : Vec3(from + leg.by);
+    from += leg.by;
   }
 }
 
-Motion::Place Motion::at(std::uint64_t tick) const noexcept {
-  Place out;
+HandPlace Motion::at(std::uint64_t tick) noexcept {
+  HandPlace out;
   if (legs_.empty()) return out;
   const auto found = std::lower_bound(ends_.begin(), ends_.end(), tick);
-  const auto leg = static_cast<std::size_t>(found - ends_.begin());
-  const std::size_t at = std::min(leg, legs_.size() - 1);
+  const std::size_t at = std::min(static_cast<std::size_t>(found - ends_.begin()), legs_.size() - 1);
   const std::uint64_t begin = at == 0 ? 0 : ends_[at - 1];
   const std::uint64_t moved = std::min(tick - begin, moving_[at]);
-  out.leg = leg;
+  out.hold = tick <= ticks() ? 1 : 0;
   out.position = from_[at] + legs_[at].by * (static_cast<double>(moved) / static_cast<double>(moving_[at]));
   return out;
 }

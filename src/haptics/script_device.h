@@ -1,29 +1,30 @@
 #pragma once
 
-/// A hand that moves by a script: demonstrations, tests, measurements.
+/// What holds is exactly where the script has it: demonstrations, tests, measurements.
+
+#include <memory>
+#include <utility>
 
 #include "haptics/device.h"
-#include "haptics/motion.h"
+#include "haptics/hand_path.h"
 
 namespace rhexis::haptics {
 
 class ScriptDevice final : public Device {
  public:
   static constexpr const char* kName = "script";
-  static constexpr std::uint32_t kHolds =
-      1;  ///< button: pressed while a leg lasts; let go for the last tick of one that lets go
   static DeviceTraits make_traits();
 
-  explicit ScriptDevice(Motion motion) : motion_(std::move(motion)) {}
+  explicit ScriptDevice(std::shared_ptr<HandPath> hand) : hand_(std::move(hand)) {}
 
   [[nodiscard]] const DeviceTraits& traits() const override { return traits_; }
-  /// Not present when the motion is over.
+  /// Not present while the script holds nothing.
   Reading read(std::uint64_t tick) noexcept override;
   void write(const Vec3&) noexcept override {}
 
  private:
   DeviceTraits traits_ = make_traits();
-  Motion motion_;
+  std::shared_ptr<HandPath> hand_;
 };
 
 }  // namespace rhexis::haptics

@@ -10,13 +10,13 @@ namespace {
 
 constexpr double kPeriod = 1e6 * kTickSeconds;  // us
 
-std::size_t bin_of(double value) {
+}  // namespace
+
+std::size_t Histogram::bin_of(double value) noexcept {
   if (!(value >= 1.0)) return 0;
   const auto bin = static_cast<std::size_t>(std::floor(2.0 * std::log2(value))) + 1;
-  return std::min(bin, Histogram::kBins - 1);
+  return std::min(bin, kBins - 1);
 }
-
-}  // namespace
 
 std::uint64_t Histogram::total() const { return std::accumulate(count.begin(), count.end(), std::uint64_t{0}); }
 
@@ -29,9 +29,13 @@ double Histogram::part_below(double value) const {
 
 void TickStatistics::add(const Tick& tick) noexcept {
   increase(ticks_, 1);
-  increase(late_[bin_of(tick.late)], 1);
-  increase(work_[bin_of(tick.work)], 1);
-  if (tick.holds) increase(age_[bin_of(tick.law_age)], 1);
+  increase(late_[Histogram::bin_of(tick.late)], 1);
+  increase(work_[Histogram::bin_of(tick.work)], 1);
+  if (tick.holds) increase(age_[Histogram::bin_of(tick.law_age)], 1);
+  if (tick.holds && tick.law_age > oldest_.load(std::memory_order_relaxed)) {
+    oldest_.store(tick.law_age, std::memory_order_relaxed);
+    oldest_tick_.store(tick.number, std::memory_order_relaxed);
+  }
   if (tick.late > kPeriod) increase(missed_, 1);
   if (tick.late > worst_late_.load(std::memory_order_relaxed)) {
     worst_late_.store(tick.late, std::memory_order_relaxed);
@@ -57,6 +61,8 @@ TickReport TickStatistics::report() const {
   out.worst_late = worst_late_.load(std::memory_order_relaxed);
   out.worst_cause = worst_cause_.load(std::memory_order_relaxed);
   out.worst_work = worst_work_.load(std::memory_order_relaxed);
+  out.oldest = oldest_.load(std::memory_order_relaxed);
+  out.oldest_tick = oldest_tick_.load(std::memory_order_relaxed);
   copy(late_, out.late);
   copy(work_, out.work);
   copy(age_, out.age);

@@ -15,6 +15,7 @@ struct Histogram {
   static constexpr std::size_t kBins = 42;  ///< up to 2^20, a second in microseconds
   std::array<std::uint64_t, kBins> count{};
 
+  [[nodiscard]] static std::size_t bin_of(double value) noexcept;  ///< of one that is not a number: the first
   [[nodiscard]] static double upper_edge(std::size_t bin) { return std::pow(2.0, 0.5 * static_cast<double>(bin)); }
   [[nodiscard]] std::uint64_t total() const;
   /// The part of all in bins that end at or below `value`: at least so many were smaller.
@@ -32,10 +33,12 @@ struct TickReport {
   std::uint64_t worst_tick = 0;
   double worst_late = 0.0;  ///< us
   LateCause worst_cause = LateCause::none;
-  double worst_work = 0.0;  ///< us, the longest that a tick took by itself
-  Histogram late;           ///< us after its time that a tick began
-  Histogram work;           ///< us that a tick took
-  Histogram age;            ///< ticks since the law was taken up, of the ticks that held something
+  double worst_work = 0.0;        ///< us, the longest that a tick took by itself
+  std::uint64_t oldest_tick = 0;  ///< that felt the oldest law of all
+  std::uint32_t oldest = 0;       ///< ticks, its age
+  Histogram late;                 ///< us after its time that a tick began
+  Histogram work;                 ///< us that a tick took
+  Histogram age;                  ///< ticks since the law was taken up, of the ticks that held something
 };
 
 /// The counters behind a report. One thread writes.
@@ -67,7 +70,8 @@ class TickStatistics {
     counter.store(counter.load(std::memory_order_relaxed) + by, std::memory_order_relaxed);
   }
 
-  Counter ticks_{0}, missed_{0}, skipped_{0}, worst_tick_{0};
+  Counter ticks_{0}, missed_{0}, skipped_{0}, worst_tick_{0}, oldest_tick_{0};
+  std::atomic<std::uint32_t> oldest_{0};
   std::atomic<double> worst_late_{0.0}, worst_work_{0.0}, recent_worst_{0.0};
   std::atomic<LateCause> worst_cause_{LateCause::none};
   Bins late_{}, work_{}, age_{};

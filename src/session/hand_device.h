@@ -1,38 +1,41 @@
 #pragma once
 
-/// The device that holds the body, or the scene's script in its place while that runs.
+/// The device that holds the body, or the scene's script in its place while that runs. A device that follows the script
+/// by itself needs nobody in its place.
 
-#include "base/newest_value.h"
+#include <memory>
+#include <utility>
+
 #include "haptics/device.h"
-#include "session/scripted_pull.h"
+#include "haptics/script_device.h"
 
 namespace rhexis::session {
 
 class HandDevice final : public haptics::Device {
  public:
   /// `device` has to outlive this; opened and closed by whoever made it.
-  explicit HandDevice(haptics::Device& device) : device_(device) {}
-
-  /// By the thread of the physics.
-  void order(const ScriptedPull& pull) noexcept { orders_.publish(pull); }
+  HandDevice(haptics::Device& device, std::shared_ptr<haptics::HandPath> script)
+      : device_(device), script_(std::move(script)) {}
 
   [[nodiscard]] const haptics::DeviceTraits& traits() const override { return device_.traits(); }
   haptics::Reading read(std::uint64_t tick) noexcept override {
     haptics::Reading reading = device_.read(tick);
-    orders_.take(pull_);
-    if (pull_.on == 0) return reading;
-    reading.position = pull_.at(tick);
+    if (traits().follows_script) return reading;
+    const haptics::Reading scripted = script_.read(tick);
+    is_scripted_ = scripted.present;
+    if (!is_scripted_) return reading;
+    reading.position = scripted.position;
     reading.present = true;
     return reading;
   }
   /// The script's force is nobody's to feel.
-  void write(const Vec3& force) noexcept override { device_.write(pull_.on != 0 ? Vec3(Vec3::Zero()) : force); }
+  void write(const Vec3& force) noexcept override { device_.write(is_scripted_ ? Vec3(Vec3::Zero()) : force); }
   [[nodiscard]] std::string diagnosis() const override { return device_.diagnosis(); }
 
  private:
   haptics::Device& device_;
-  NewestValue<ScriptedPull> orders_;
-  ScriptedPull pull_;  ///< the reader's
+  haptics::ScriptDevice script_;
+  bool is_scripted_ = false;  ///< in this tick, in its place
 };
 
 }  // namespace rhexis::session

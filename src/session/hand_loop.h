@@ -13,8 +13,8 @@
 namespace rhexis::session {
 
 struct HandLoop {
-  HandLoop(haptics::Device& of, const haptics::LoopSettings& settings)
-      : device(of), loop(device, laws, hands, trace, settings) {}
+  HandLoop(haptics::Device& of, std::shared_ptr<haptics::HandPath> script, const haptics::LoopSettings& settings)
+      : device(of, std::move(script)), loop(device, laws, hands, trace, settings) {}
 
   NewestValue<response::ForceSnapshot> laws;
   NewestValue<haptics::HandState> hands;

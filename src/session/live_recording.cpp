@@ -25,8 +25,9 @@ std::filesystem::path free_name(const std::filesystem::path& folder, const std::
 }  // namespace
 
 Expected<void> LiveSession::begin_loop() {
-  auto loop = std::make_unique<HandLoop>(*settings_.device,
-                                         haptics::LoopSettings{.tick = tick_settings_, .priority = settings_.priority});
+  holder_.script->order({});  // what was ordered before counts other ticks
+  auto loop = std::make_unique<HandLoop>(*holder_.device, holder_.script,
+                                         haptics::LoopSettings{.tick = holder_.tick, .priority = settings_.priority});
   if (Expected<void> started = loop->loop.start(); !started) return started;
   loop_ = std::move(loop);
   rates_.restart();
@@ -43,11 +44,11 @@ Expected<void> LiveSession::begin_recording() {
   if (!body) return fail(std::move(body.error()));
   std::error_code code;
   std::filesystem::create_directories(settings_.recordings, code);  // what is wrong with it, making the file says
-  const haptics::DeviceTraits& traits = settings_.device->traits();
+  const haptics::DeviceTraits& traits = holder_.device->traits();
   Expected<std::unique_ptr<Recorder>> recorder = Recorder::create(
       free_name(settings_.recordings, interaction_->body().scene.file), {.version = settings_.version,
                                                                          .device = traits.name,
-                                                                         .tick = tick_settings_,
+                                                                         .tick = holder_.tick,
                                                                          .device_max_force = traits.max_force,
                                                                          .device_resolution = traits.resolution,
                                                                          .device_delay = traits.delay,

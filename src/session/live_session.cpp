@@ -26,31 +26,42 @@ wire::SharedMessage make_hello(const LiveSettings& settings) {
 Expected<std::unique_ptr<LiveSession>> LiveSession::open(LiveSettings settings, FrameSink& sink) {
   if (std::find(settings.scenes.begin(), settings.scenes.end(), settings.scene) == settings.scenes.end())
     settings.scenes.insert(settings.scenes.begin(), settings.scene);
-  if (settings.tick) {
-    if (Expected<void> good = haptics::check_settings(*settings.tick); !good) return fail(std::move(good.error()));
-  }
+  Holder holder{.script = std::make_shared<ScriptedHand>(), .device = nullptr, .tick = {}};
+  Expected<std::unique_ptr<haptics::Device>> device =
+      settings.device ? settings.device(holder.script) : std::make_unique<haptics::PointerDevice>();
+  if (!device) return fail(std::move(device.error()));
+  holder.device = std::move(*device);
+  holder.tick = haptics::settings_for(holder.device->traits());
+  holder.tick.motion_scale = settings.motion_scale;
+  holder.tick.force_scale = settings.force_scale;
+  if (Expected<void> good = haptics::check_settings(holder.tick); !good) return fail(std::move(good.error()));
   Expected<std::string> text = scene::read_scene_text(settings.scene);
   if (!text) return fail(std::move(text.error()));
   Expected<std::unique_ptr<OpenBody>> body =
       open_body({.file = settings.scene, .text = std::move(*text), .overrides = settings.overrides});
   if (!body) return fail(std::move(body.error()));
-  return std::unique_ptr<LiveSession>(new LiveSession(std::move(settings), sink, std::move(*body)));
+  if (const haptics::DeviceTraits& traits = holder.device->traits();
+      traits.follows_script && (*body)->problem.pulls.empty())
+    return fail(fmt::format("there is nothing for device '{}' to do", traits.name), "add a [[pull]]", settings.scene);
+  return std::unique_ptr<LiveSession>(new LiveSession(std::move(settings), sink, std::move(holder), std::move(*body)));
 }
 
-LiveSession::LiveSession(LiveSettings settings, FrameSink& sink, std::unique_ptr<OpenBody> body)
-    : settings_(std::move(settings)), sink_(sink), hello_(make_hello(settings_)) {
-  if (settings_.device == nullptr) settings_.device = &pointer_;
-  tick_settings_ = settings_.tick.value_or(haptics::settings_for(settings_.device->traits()));
+LiveSession::LiveSession(LiveSettings settings, FrameSink& sink, Holder holder, std::unique_ptr<OpenBody> body)
+    : settings_(std::move(settings)),
+      sink_(sink),
+      hello_(make_hello(settings_)),
+      holder_(std::move(holder)),
+      pointer_(dynamic_cast<haptics::PointerDevice*>(holder_.device.get())) {
   interaction_ = std::make_unique<Interaction>(std::move(body), scene_reader(), *this);
 }
 
 LiveSession::~LiveSession() { stop(); }
 
 Expected<void> LiveSession::start() {
-  if (Expected<void> opened = settings_.device->open(); !opened) return opened;
+  if (Expected<void> opened = holder_.device->open(); !opened) return opened;
   Expected<void> begun = settings_.records ? begin_recording() : begin_loop();
   if (!begun) {
-    settings_.device->close();
+    holder_.device->close();
     return begun;
   }
   if (recorder_ == nullptr) has_body(/*anew=*/true);
@@ -65,17 +76,17 @@ void LiveSession::stop() {
   physics_.join();
   loop_->loop.stop();
   take_trace();
-  settings_.device->close();
+  holder_.device->close();
   end_recording();
   say_what_closed(/*waits=*/true);
 }
 
 void LiveSession::post(wire::PayloadUnion command) {
   const bool takes_hold = command.type == wire::Payload::Grasp;
-  if (command.type == wire::Payload::Move || takes_hold) {
+  if (pointer_ != nullptr && (command.type == wire::Payload::Move || takes_hold)) {
     const wire::Vec3* to = takes_hold ? nullptr : command.AsMove()->to.get();
     const std::lock_guard lock(pointer_mutex_);
-    pointer_.move_to(to != nullptr ? Vec3(to->x(), to->y(), to->z()) : Vec3(Vec3::Zero()));
+    pointer_->move_to(to != nullptr ? Vec3(to->x(), to->y(), to->z()) : Vec3(Vec3::Zero()));
   }
   if (command.type == wire::Payload::Move) return;
   const std::lock_guard lock(commands_mutex_);
@@ -104,7 +115,7 @@ void LiveSession::step() {
   const StepOutcome outcome = interaction_->step(hand_, fresh);
   steps_ = outcome.number;
   loop_->laws.publish(interaction_->law());
-  loop_->device.order(interaction_->orders());
+  holder_.script->order(interaction_->orders());
   take_trace();
   if (recorder_)
     recorder_->add(StepRow{.number = outcome.number,
@@ -154,9 +165,19 @@ void LiveSession::carry_out(const wire::PayloadUnion& command) {
       }
       break;
     default:
+      if (!is_for_page(command)) break;
       if (recorder_) recorder_->add_command(next_step(), command);
       interaction_->carry_out(command);
   }
+}
+
+/// What takes hold by itself is not disturbed by a page, nor by one that leaves and lets go of what it never held.
+bool LiveSession::is_for_page(const wire::PayloadUnion& command) {
+  const haptics::DeviceTraits& traits = holder_.device->traits();
+  const bool takes_hold = command.type == wire::Payload::Grasp;
+  if (!traits.follows_script || (!takes_hold && command.type != wire::Payload::LetGo)) return true;
+  if (takes_hold) says(wire::Level::info, fmt::format("the device '{}' holds the body: the page watches", traits.name));
+  return false;
 }
 
 /// Every tick of the haptic loop since the last step.
@@ -189,6 +210,13 @@ void LiveSession::has_body(bool anew) {
   opened_ = true;
   send_body();
   if (!anew) return;
+  if (holder_.device->traits().follows_script) {
+    wire::PayloadUnion begin;
+    wire::ScriptT on;
+    on.on = true;
+    begin.Set(on);
+    post(std::move(begin));
+  }
   const OpenBody& body = interaction_->body();
   for (const std::string& note : body.problem.notes) says(wire::Level::info, note);
   for (const std::string& warning : body.problem.warnings) says(wire::Level::warning, warning);

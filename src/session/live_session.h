@@ -21,6 +21,7 @@
 #include "session/live_rates.h"
 #include "session/live_settings.h"
 #include "session/recorder.h"
+#include "session/scripted_hand.h"
 
 namespace rhexis::session {
 
@@ -37,7 +38,8 @@ class LiveSession final : public CommandTarget, public InteractionListener {
   /// Commands that wait for a step. More are dropped, and it is said.
   static constexpr std::size_t kMostCommands = 1024;
 
-  /// Opens the first scene. `sink` and the settings' device outlive the session. Errors: the scene's, the settings'.
+  /// Makes the device, opens the first scene. `sink` outlives the session. Errors: the device's, the scene's, the
+  /// settings'; a scene without a pull for a device that follows one.
   static Expected<std::unique_ptr<LiveSession>> open(LiveSettings settings, FrameSink& sink);
   ~LiveSession() override;  ///< stops
 
@@ -49,14 +51,25 @@ class LiveSession final : public CommandTarget, public InteractionListener {
   void post(wire::PayloadUnion command) override;
   [[nodiscard]] wire::SharedMessage hello() const override { return hello_; }
 
+  /// Of the last start. While the session runs a recording may replace it.
+  [[nodiscard]] const haptics::HapticLoop& haptic_loop() const { return loop_->loop; }
+
  private:
   using Clock = std::chrono::steady_clock;
 
-  LiveSession(LiveSettings settings, FrameSink& sink, std::unique_ptr<OpenBody> body);
+  /// A device, the script that it may follow, and how the loop treats it.
+  struct Holder {
+    std::shared_ptr<ScriptedHand> script;
+    std::unique_ptr<haptics::Device> device;
+    haptics::TickSettings tick;
+  };
+
+  LiveSession(LiveSettings settings, FrameSink& sink, Holder holder, std::unique_ptr<OpenBody> body);
   void run();
   void step();
   void take_commands();
   void carry_out(const wire::PayloadUnion& command);
+  bool is_for_page(const wire::PayloadUnion& command);
   void take_trace();
   void send_state();
   void watch_recording();  ///< ends one that has come to trouble
@@ -77,8 +90,8 @@ class LiveSession final : public CommandTarget, public InteractionListener {
   LiveSettings settings_;
   FrameSink& sink_;
   wire::SharedMessage hello_;
-  haptics::PointerDevice pointer_;
-  haptics::TickSettings tick_settings_;
+  Holder holder_;
+  haptics::PointerDevice* pointer_ = nullptr;  ///< the holder's device, where it is that of the page
 
   // Between the threads of clients and that of the physics.
   std::mutex commands_mutex_;

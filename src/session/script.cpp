@@ -22,7 +22,7 @@ Script::Does Script::step(const std::vector<scene::PullSettings>& pulls, std::ui
     const scene::PullSettings& pull = pulls[next_];
     pulling_ = true;
     taken_ = 0;
-    orders_ = {.on = 1,
+    orders_ = {.hold = ++pulls_,
                .runs = 1,
                .since = now,
                .elapsed = 0,

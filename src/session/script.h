@@ -21,7 +21,11 @@ class Script {
     next_ = 0;
     pulling_ = false;
   }
-  void end() { *this = Script(); }
+  void end() {
+    on_ = pulling_ = false;
+    next_ = 0;
+    orders_ = {};
+  }
   [[nodiscard]] bool is_on() const { return on_; }
   /// The pull that is made, or will be next.
   [[nodiscard]] std::size_t pull() const { return next_; }
@@ -38,6 +42,7 @@ class Script {
   bool pulling_ = false;
   std::size_t next_ = 0;
   std::uint64_t taken_ = 0;  ///< ticks of the present pull
+  std::uint32_t pulls_ = 0;  ///< begun, by all scripts so far
   ScriptedPull orders_;
 };
 

@@ -12,8 +12,9 @@ namespace rhexis::session {
 
 /// Copied as bytes from the physics to the haptic loop.
 struct ScriptedPull {
-  std::uint8_t on = 0;         ///< 0: nothing is scripted, the device itself says where the hand is
-  std::uint8_t runs = 0;       ///< 0: it stands still (paused)
+  std::uint32_t hold =
+      0;  ///< counts the pulls from 1; 0: nothing is scripted, the device itself says where the hand is
+  std::uint32_t runs = 0;      ///< 0: it stands still (paused)
   std::uint64_t since = 0;     ///< tick of the haptic loop from which it runs on
   std::uint64_t elapsed = 0;   ///< ticks that the pull had taken then
   std::uint64_t moving = 1;    ///< ticks that the way takes; then it is held

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "haptics/motion.h"
 #include "haptics/tick.h"
 #include "response/snapshot.h"
 
@@ -32,9 +35,9 @@ Expected<ClosedLoopRun> run_closed_loop(const ClosedLoop& loop) {
   if (loop.ticks < kKick + kWatched)
     return fail(fmt::format("{} ticks of a closed loop", loop.ticks), fmt::format("{} or more", kKick + kWatched));
   if (Expected<void> good = haptics::check_settings(loop.tick); !good) return fail(good.error());
-  haptics::EmulatorDevice device(loop.device,
-                                 haptics::Motion({{.seconds = kKick * haptics::kTickSeconds},
-                                                  {.by = kAside, .seconds = kJumpTicks * haptics::kTickSeconds}}));
+  const std::vector<haptics::Leg> legs{{.seconds = kKick * haptics::kTickSeconds},
+                                       {.by = kAside, .seconds = kJumpTicks * haptics::kTickSeconds}};
+  haptics::EmulatorDevice device(loop.device, std::make_shared<haptics::Motion>(legs));
   if (Expected<void> opened = device.open(); !opened) return fail(opened.error());
   haptics::HapticTick tick(loop.tick, device.traits());
   const ForceSnapshot law = law_of(loop.body_stiffness);

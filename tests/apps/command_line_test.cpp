@@ -1,5 +1,7 @@
 // The other commands, and the command line itself.
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -169,6 +171,19 @@ TEST(MeshCommand, ListsEveryDefect) {
   const std::string defects = json::parse(ran.out)["defects"].dump();
   EXPECT_THAT(defects, HasSubstr("tet 1 is flat"));
   EXPECT_THAT(defects, HasSubstr("tet 2"));
+}
+
+TEST(PlayCommand, ADeviceThatIsNotThereEndsItWithTheNearestName) {
+  const auto said = [](const std::string& device) {
+    const test::Ran ran = test::run_rhexis("play scenes/plate-tear.toml --device " + device);
+    EXPECT_EQ(ran.code, 2);
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1);
+    return ran.err;
+  };
+  EXPECT_THAT(said("emulater"), HasSubstr("unknown device 'emulater' (did you mean 'emulator'?)"));
+  EXPECT_THAT(said("hammer"), HasSubstr("one of pointer, script, replay, emulator"));
+  EXPECT_THAT(said("replay"), HasSubstr("rhexis replay RECORDING"));
+  EXPECT_THAT(said("emulator --force-scale 0"), HasSubstr("more than 0"));
 }
 
 TEST(CompareCommand, AResultEqualsItselfAndDiffersFromAnother) {

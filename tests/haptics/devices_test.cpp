@@ -16,41 +16,42 @@ namespace {
 
 using testing::HasSubstr;
 
-Motion two_pulls() {
-  return Motion({{.by = Vec3(-0.12, 0.0, 0.0), .seconds = 0.2, .hold = 0.05, .lets_go = true},
-                 {.by = Vec3(0.0, 0.01, 0.0), .seconds = 0.1}});
-}
+/// Two holds: the second begins at tick 3 where the first has ended, and ends with tick 5.
+class TwoHolds final : public HandPath {
+ public:
+  HandPlace at(std::uint64_t tick) noexcept override {
+    if (tick == 0 || tick > 5) return {};
+    const std::uint32_t hold = tick < 3 ? 1 : 2;
+    return {.position = Vec3(0.001, 0.0, 0.0) * static_cast<double>(tick - (hold == 1 ? 0 : 2)), .hold = hold};
+  }
+};
 
 TEST(Motion, GoesThroughTheSamePlacesAsTear) {
-  const Motion motion = two_pulls();
+  Motion motion(
+      {{.by = Vec3(-0.12, 0.0, 0.0), .seconds = 0.2, .hold = 0.05}, {.by = Vec3(0.0, 0.01, 0.0), .seconds = 0.1}});
   EXPECT_EQ(motion.ticks(), 350u);
   EXPECT_EQ(motion.at(0).position, Vec3(0.0, 0.0, 0.0));
   for (int k = 1; k <= 250; ++k) {
     const auto tick = static_cast<std::uint64_t>(k);
     EXPECT_EQ(motion.at(tick).position, Vec3(-0.12, 0.0, 0.0) * (static_cast<double>(std::min(k, 200)) / 200));
-    EXPECT_EQ(motion.at(tick).leg, 0u);
+    EXPECT_EQ(motion.at(tick).hold, 1u);
   }
-  EXPECT_EQ(motion.at(251).leg, 1u);
-  EXPECT_EQ(motion.at(251).position, Vec3(0.0, 0.01, 0.0) * (1.0 / 100));
-  EXPECT_EQ(motion.at(350).position, Vec3(0.0, 0.01, 0.0));
-  EXPECT_EQ(motion.at(9999).position, Vec3(0.0, 0.01, 0.0));
-  EXPECT_EQ(motion.at(9999).leg, 2u);
+  EXPECT_EQ(motion.at(251).position, Vec3(-0.12, 0.01 * (1.0 / 100), 0.0));
+  EXPECT_EQ(motion.at(350).position, Vec3(-0.12, 0.01, 0.0));
+  EXPECT_EQ(motion.at(350).hold, 1u);
+  EXPECT_EQ(motion.at(9999).position, Vec3(-0.12, 0.01, 0.0));
+  EXPECT_EQ(motion.at(9999).hold, 0u);
   EXPECT_EQ(Motion().at(5).position, Vec3(0.0, 0.0, 0.0));
+  EXPECT_EQ(Motion().at(5).hold, 0u);
 }
 
-TEST(Motion, LegsThatDoNotLetGoFollowEachOther) {
-  const Motion motion({{.by = Vec3(0.1, 0.0, 0.0), .seconds = 0.1}, {.by = Vec3(0.0, 0.2, 0.0), .seconds = 0.1}});
-  EXPECT_EQ(motion.at(200).position, Vec3(0.1, 0.2, 0.0));
-}
-
-TEST(ScriptDevice, PressesWhileALegLastsAndIsGoneAfterTheLast) {
-  ScriptDevice device(two_pulls());
-  EXPECT_EQ(device.read(0).buttons, ScriptDevice::kHolds);
-  EXPECT_EQ(device.read(249).buttons, ScriptDevice::kHolds);
-  EXPECT_EQ(device.read(250).buttons, 0u) << "lets go";
-  EXPECT_EQ(device.read(251).buttons, ScriptDevice::kHolds);
-  EXPECT_TRUE(device.read(350).present);
-  EXPECT_FALSE(device.read(351).present);
+TEST(ScriptDevice, IsWhereTheScriptHasItAndGoneWhileThatHoldsNothing) {
+  ScriptDevice device(std::make_shared<TwoHolds>());
+  EXPECT_FALSE(device.read(0).present);
+  EXPECT_TRUE(device.read(1).present);
+  EXPECT_EQ(device.read(2).position, Vec3(0.002, 0.0, 0.0));
+  EXPECT_EQ(device.read(3).position, Vec3(0.001, 0.0, 0.0)) << "counts from the hold";
+  EXPECT_FALSE(device.read(6).present);
 }
 
 TEST(ReplayDevice, GivesWhatWasRecordedAndIsGoneThen) {
@@ -83,7 +84,7 @@ TEST(EmulatorDevice, AMassUnderAForceMovesAsItShould) {
   EmulatorSettings settings;
   settings.mass = 0.2;
   settings.damping = settings.hand_stiffness = settings.hand_damping = settings.resolution = 0.0;
-  EmulatorDevice device(settings, Motion());
+  EmulatorDevice device(settings, at_rest());
   EXPECT_FALSE(device.read(0).present) << "not open yet";
   ASSERT_TRUE(device.open());
   for (std::uint64_t tick = 0; tick < 100; ++tick) {
@@ -103,7 +104,7 @@ TEST(EmulatorDevice, SwingsAsADampedOscillator) {
   settings.hand_stiffness = 90.0;
   settings.resolution = 0.0;
   settings.start = Vec3(0.01, 0.0, 0.0);
-  EmulatorDevice device(settings, Motion());
+  EmulatorDevice device(settings, at_rest());
   ASSERT_TRUE(device.open());
   const double rate = (0.5 + 0.5) / (2.0 * 0.1);
   const double turn = std::sqrt(90.0 / 0.1 - rate * rate);
@@ -117,7 +118,7 @@ TEST(EmulatorDevice, SwingsAsADampedOscillator) {
 TEST(EmulatorDevice, FollowsItsHandForcesComeLateAndAreCutPositionsAreSteps) {
   EmulatorSettings settings;
   settings.delay = 5;
-  EmulatorDevice device(settings, Motion({{.by = Vec3(0.02, 0.0, 0.0), .seconds = 0.1}}));
+  EmulatorDevice device(settings, moving({{.by = Vec3(0.02, 0.0, 0.0), .seconds = 0.1}}));
   EXPECT_EQ(device.traits().delay, 5);
   ASSERT_TRUE(device.open());
   for (std::uint64_t tick = 0; tick < 1500; ++tick) {
@@ -137,11 +138,24 @@ TEST(EmulatorDevice, FollowsItsHandForcesComeLateAndAreCutPositionsAreSteps) {
   EXPECT_LT(std::abs(device.position()[1]), 2e-3) << "of one tick alone";
 }
 
+TEST(EmulatorDevice, ItsHandBeginsANewHoldWhereTheLastHasEndedAndStaysWhereItIs) {
+  EmulatorSettings settings = EmulatorSettings::firmly_held();
+  settings.resolution = 0.0;
+  EmulatorDevice device(settings, std::make_shared<TwoHolds>());
+  ASSERT_TRUE(device.open());
+  device.read(3000);
+  EXPECT_NEAR(device.position()[0], 0.002 + 0.003, 1e-12);  // at rest: e^(-50 t) and faster, for 3 s
+  ASSERT_TRUE(device.open()) << "a loop that begins anew counts from 0 again";
+  EXPECT_TRUE(device.read(0).position.isZero(0.0));
+  device.read(3000);
+  EXPECT_NEAR(device.position()[0], 0.002 + 0.003, 1e-12);
+}
+
 TEST(EmulatorDevice, ThatCannotBeIsRefused) {
   const auto refused = [](auto&& change) {
     EmulatorSettings settings;
     change(settings);
-    return !EmulatorDevice(settings, Motion()).open();
+    return !EmulatorDevice(settings, at_rest()).open();
   };
   EXPECT_FALSE(refused([](EmulatorSettings&) {}));
   EXPECT_TRUE(refused([](EmulatorSettings& s) { s.mass = 0.0; }));
@@ -157,7 +171,7 @@ TEST(DeviceList, AllThatAreListedCanBeMade) {
     EXPECT_TRUE(names.insert(traits.name).second);
     EXPECT_FALSE(traits.what.empty());
     const Expected<std::unique_ptr<Device>> device =
-        make_device(traits.name, {.motion = two_pulls(), .readings = {Reading{}}, .emulator = {}});
+        make_device(traits.name, {.hand = moving({{.seconds = 0.01}}), .readings = {Reading{}}, .emulator = {}});
     ASSERT_TRUE(device) << device.error().message();
     EXPECT_EQ((*device)->traits().name, traits.name);
     ASSERT_TRUE((*device)->open());
@@ -171,8 +185,9 @@ TEST(DeviceList, AllThatAreListedCanBeMade) {
 TEST(DeviceList, WhatIsNotThereIsSaidWithWhatIs) {
   EXPECT_THAT(make_device("pointr", {}).error().message(), HasSubstr("did you mean 'pointer'?"));
   EXPECT_THAT(make_device("falcon-9", {}).error().message(), HasSubstr("one of pointer, script"));
-  EXPECT_THAT(make_device("script", {}).error().message(), HasSubstr("[[pull]]"));
-  EXPECT_THAT(make_device("replay", {}).error().message(), HasSubstr("recording"));
+  EXPECT_THAT(make_device("script", {}).error().message(), HasSubstr("no hand"));
+  EXPECT_THAT(make_device("emulator", {}).error().message(), HasSubstr("no hand"));
+  EXPECT_THAT(make_device("replay", {}).error().message(), HasSubstr("rhexis replay RECORDING"));
 }
 
 }  // namespace

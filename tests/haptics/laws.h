@@ -4,13 +4,17 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/QR>
 
 #include "haptics/device.h"
+#include "haptics/motion.h"
 #include "haptics/tick_settings.h"
 #include "response/snapshot.h"
 
@@ -75,6 +79,9 @@ inline DeviceTraits pointing_device() {
   traits.counts_from_hold = true;
   return traits;
 }
+
+inline std::shared_ptr<Motion> moving(std::vector<Leg> legs) { return std::make_shared<Motion>(std::move(legs)); }
+inline std::shared_ptr<Motion> at_rest() { return moving({}); }
 
 inline Vec3 vec(const std::array<double, 3>& value) { return {value[0], value[1], value[2]}; }
 

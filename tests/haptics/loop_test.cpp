@@ -44,7 +44,7 @@ TEST(HapticLoop, TakesNoMemoryInAThousandTicks) {
   GTEST_SKIP() << "the sanitizer has its own malloc";
 #else
   const auto around = std::make_unique<Surroundings>();
-  EmulatorDevice device({}, Motion({{.by = Vec3(0.02, 0.01, 0.0), .seconds = 0.5}}));
+  EmulatorDevice device({}, moving({{.by = Vec3(0.02, 0.01, 0.0), .seconds = 0.5}}));
   HapticLoop loop(device, around->laws, around->hand, around->trace, {.tick = settings_for(device.traits())});
   std::mt19937_64 random(1);
   const ForceSnapshot law = make_law(random_stiffness(random));
@@ -76,7 +76,7 @@ TEST(HapticLoop, TakesNoMemoryInAThousandTicks) {
 
 TEST(HapticLoop, EachTickIsInTheTraceWithWhatMakesItAgain) {
   const auto around = std::make_unique<Surroundings>();
-  EmulatorDevice device({}, Motion({{.by = Vec3(0.02, 0.01, 0.0), .seconds = 0.2}}));
+  EmulatorDevice device({}, moving({{.by = Vec3(0.02, 0.01, 0.0), .seconds = 0.2}}));
   const TickSettings settings = settings_for(device.traits());
   HapticLoop loop(device, around->laws, around->hand, around->trace, {.tick = settings});
   std::vector<ForceSnapshot> laws{ForceSnapshot{}};
@@ -186,7 +186,7 @@ TEST(HapticLoop, DoesNotStartWithADeviceThatDoesNotOpenOrBadSettings) {
   const auto around = std::make_unique<Surroundings>();
   EmulatorSettings no_mass;
   no_mass.mass = -1.0;
-  EmulatorDevice broken(no_mass, Motion());
+  EmulatorDevice broken(no_mass, at_rest());
   HapticLoop loop(broken, around->laws, around->hand, around->trace, {.tick = settings_for(broken.traits())});
   EXPECT_THAT(loop.start().error().message(), HasSubstr("mass"));
   PointerDevice pointer;
@@ -215,6 +215,8 @@ TEST(TickStatistics, CountsBySizeAndSaysWhichPartIsBelow) {
   EXPECT_DOUBLE_EQ(report.late.part_below(1500.0), 0.99) << "its bin goes on above";
   EXPECT_DOUBLE_EQ(report.late.part_below(1e9), 1.0);
   EXPECT_EQ(report.age.total(), 90u);
+  EXPECT_EQ(report.oldest, 4u);
+  EXPECT_EQ(report.oldest_tick, 1u);
   EXPECT_EQ(report.worst_tick, 3u);
   EXPECT_EQ(report.worst_late, 1500.0);
   EXPECT_EQ(report.worst_work, 40.0);

@@ -260,7 +260,7 @@ TEST(Passivity, AHandThatTremblesAtASoftBodyKeepsItsForce) {
   settings.hand_stiffness = 400.0;
   settings.hand_damping = 4.0;
   settings.start = Vec3(1e-5, -2e-5, 0.0);  // not in the middle of a step
-  EmulatorDevice device(settings, Motion(legs));
+  EmulatorDevice device(settings, moving(legs));
   ASSERT_TRUE(device.open());
   HapticTick tick(settings_for(device.traits()), device.traits());
   ForceSnapshot law = make_law(Vec3(300.0, 250.0, 80.0).asDiagonal());

@@ -37,7 +37,7 @@ struct Case {
     hand.grasp = interaction.law().grasp;
     const bool holds = (interaction.law().flags & response::ForceSnapshot::is_held) != 0;
     hand.flags = holds ? haptics::HandState::holds : 0U;
-    const Vec3 at = interaction.orders().on != 0 ? interaction.orders().at(tick) : by;
+    const Vec3 at = interaction.orders().hold != 0 ? interaction.orders().at(tick) : by;
     hand.hand = {at[0], at[1], at[2]};
     return interaction.step(hand, true);
   }

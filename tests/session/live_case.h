@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -12,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "session/frame_sink.h"
+#include "session/live_session.h"
 
 namespace rhexis::test {
 
@@ -132,5 +133,58 @@ at = [0.10, 0.0, 0.005]
 by = [-0.12, 0.0, 0.0]
 seconds = 0.5
 )";
+
+/// A session of that plate, unless the settings are changed before it starts.
+struct LiveCase {
+  explicit LiveCase(const std::string& name) : folder(name) {
+    settings.scene = folder.write("plate.toml", kLivePlate);
+    settings.version = "test";
+    settings.priority = 0;
+  }
+  void start() {
+    Expected<std::unique_ptr<session::LiveSession>> opened = session::LiveSession::open(settings, frames);
+    ASSERT_TRUE(opened.has_value()) << opened.error().message();
+    live = std::move(*opened);
+    const Expected<void> started = live->start();
+    ASSERT_TRUE(started.has_value()) << started.error().message();
+  }
+  /// True: a notice with that part came, or comes in time.
+  [[nodiscard]] bool hears(const std::string& part) const {
+    return wait_until([&] {
+      const std::vector<std::string> notices = frames.notices();
+      return std::any_of(notices.begin(), notices.end(),
+                         [&](const std::string& text) { return text.find(part) != std::string::npos; });
+    });
+  }
+  [[nodiscard]] wire::StateT state() const {
+    const wire::PayloadUnion last = frames.last(wire::Payload::State);
+    return last.AsState() != nullptr ? *last.AsState() : wire::StateT();
+  }
+  /// Of the first body: a face whose corners are all near `at`.
+  [[nodiscard]] wire::PayloadUnion grasp_near(const Vec3& at) const {
+    const wire::PayloadUnion last = frames.last(wire::Payload::Body);
+    const wire::BodyT& body = *last.AsBody();
+    double best = 1e9;
+    wire::GraspT grasp;
+    for (std::uint32_t slot = 0; 3 * slot < body.faces.size(); ++slot) {
+      Vec3 middle = Vec3::Zero();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t vertex = body.faces[3 * slot + k];
+        for (Eigen::Index c = 0; c < 3; ++c)
+          middle[c] += body.positions[3 * vertex + static_cast<std::size_t>(c)] / 3.0;
+      }
+      if ((middle - at).norm() >= best) continue;
+      best = (middle - at).norm();
+      grasp.face = slot;
+    }
+    grasp.weights = std::make_unique<wire::Vec3>(0.5, 0.25, 0.25);
+    return payload(std::move(grasp));
+  }
+
+  TestFolder folder;
+  KeptFrames frames;
+  session::LiveSettings settings;
+  std::unique_ptr<session::LiveSession> live;
+};
 
 }  // namespace rhexis::test

@@ -8,52 +8,9 @@
 namespace rhexis::session {
 namespace {
 
+using test::LiveCase;
 using test::payload;
 using test::wait_until;
-
-struct LiveCase {
-  explicit LiveCase(const std::string& name) : folder(name) {
-    settings.scene = folder.write("plate.toml", test::kLivePlate);
-    settings.version = "test";
-    settings.priority = 0;
-  }
-  void start() {
-    Expected<std::unique_ptr<LiveSession>> opened = LiveSession::open(settings, frames);
-    ASSERT_TRUE(opened.has_value()) << opened.error().message();
-    live = std::move(*opened);
-    const Expected<void> started = live->start();
-    ASSERT_TRUE(started.has_value()) << started.error().message();
-  }
-  [[nodiscard]] wire::StateT state() const {
-    const wire::PayloadUnion last = frames.last(wire::Payload::State);
-    return last.AsState() != nullptr ? *last.AsState() : wire::StateT();
-  }
-  /// Of the first body: a face whose corners are all near `at`.
-  [[nodiscard]] wire::PayloadUnion grasp_near(const Vec3& at) const {
-    const wire::PayloadUnion last = frames.last(wire::Payload::Body);
-    const wire::BodyT& body = *last.AsBody();
-    double best = 1e9;
-    wire::GraspT grasp;
-    for (std::uint32_t slot = 0; 3 * slot < body.faces.size(); ++slot) {
-      Vec3 middle = Vec3::Zero();
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t vertex = body.faces[3 * slot + k];
-        for (Eigen::Index c = 0; c < 3; ++c)
-          middle[c] += body.positions[3 * vertex + static_cast<std::size_t>(c)] / 3.0;
-      }
-      if ((middle - at).norm() >= best) continue;
-      best = (middle - at).norm();
-      grasp.face = slot;
-    }
-    grasp.weights = std::make_unique<wire::Vec3>(0.5, 0.25, 0.25);
-    return payload(std::move(grasp));
-  }
-
-  test::TestFolder folder;
-  test::KeptFrames frames;
-  LiveSettings settings;
-  std::unique_ptr<LiveSession> live;
-};
 
 TEST(LiveSession, SendsABodyFirstAndThenStatesOfIt) {
   LiveCase at("live-first");
@@ -151,29 +108,22 @@ TEST(LiveSession, WhatIsWrongIsSaidAndTheOldBodyStays) {
   const std::string other = at.folder.write("other.toml", test::kLivePlate + "[typo]\n");
   at.settings.scenes = {at.settings.scene, other};
   at.start();
-  const auto says = [&](const std::string& part) {
-    return wait_until([&] {
-      const std::vector<std::string> notices = at.frames.notices();
-      return std::any_of(notices.begin(), notices.end(),
-                         [&](const std::string& text) { return text.find(part) != std::string::npos; });
-    });
-  };
   wire::OpenSceneT open;
   open.file = "/etc/passwd";
   at.live->post(payload(open));
-  EXPECT_TRUE(says("/etc/passwd: not one of the scenes that can be opened here"));
+  EXPECT_TRUE(at.hears("/etc/passwd: not one of the scenes that can be opened here"));
   open.file = other;
   at.live->post(payload(open));
-  EXPECT_TRUE(says("unknown section 'typo'"));
+  EXPECT_TRUE(at.hears("unknown section 'typo'"));
   wire::SetValueT set;
   set.key = "material.young";
   set.value = "-1";
   at.live->post(payload(set));
-  EXPECT_TRUE(says("--set material.young=-1: 'material.young' is -1"));
+  EXPECT_TRUE(at.hears("--set material.young=-1: 'material.young' is -1"));
   wire::GraspT grasp;
   grasp.face = 4'000'000'000U;
   at.live->post(payload(std::move(grasp)));
-  EXPECT_TRUE(says("there is no surface any more"));
+  EXPECT_TRUE(at.hears("there is no surface any more"));
   EXPECT_EQ(at.frames.count(wire::Payload::Body), 1U);
   set.value = "2e6";
   at.live->post(payload(set));
