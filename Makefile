@@ -38,11 +38,11 @@ demo: build ## the vessel of the paper with all six models: a table, and files f
 	@tools/demo out/demo
 
 # ctest comes last, so that its summary closes the output.
-test: ## all that must hold before a change lands: floors, format, fuzzing under sanitizers, tests
+test: ## all that must hold before a change lands: floors, format, fuzzing under sanitizers, the page in Chromium, tests
 	@tools/install test
 	@$(MAKE) --no-print-directory check-floors check-format fuzz
 	@$(call build_preset,release,all)
-	@$(MAKE) --no-print-directory test-viewer
+	@$(MAKE) --no-print-directory test-viewer e2e
 	@$(ctest) --test-dir build/release
 
 test-viewer: viewer ## the units of the page

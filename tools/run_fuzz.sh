@@ -25,7 +25,7 @@ run_one() {
   # A single input gets 10 s and 2 GiB.
   local options=(-max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1
     -artifact_prefix="$folder/crashes/")
-  if [ "$target" = vtkhdf ]; then
+  if reads_hdf5 "$target"; then
     # HDF5 asks for absurd sizes and copes when it does not get them, and loses memory of its own when it refuses a file.
     # It also crashes: then the search goes on, and afterwards each crash is looked at.
     export ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0
@@ -33,7 +33,7 @@ run_one() {
   fi
   "$program" "${options[@]}" "$folder/corpus" "fuzz/corpus/$target" >"$log" 2>&1
   local status=$? exempt=0 input
-  if [ "$target" = vtkhdf ]; then
+  if reads_hdf5 "$target"; then
     grep -q '^#[0-9]*: cov:' "$log" && status=0  # with -fork it tells of the last crash alone
     for input in "$folder"/crashes/*; do
       [ -e "$input" ] || continue
@@ -49,11 +49,13 @@ run_one() {
   if [ $status -eq 0 ]; then echo "fuzz_$target: ok, $line"; else echo "fuzz_$target: FAILED, $line, see $log"; return 1; fi
 }
 
+reads_hdf5() { [ "$1" = vtkhdf ] || [ "$1" = recording ]; }
+
 # True when the innermost frame outside of the sanitizer and the C library belongs to HDF5.
 inside_hdf5() {
   grep -E '^ *#[0-9]+ 0x' "$1" | grep -vE 'compiler-rt|__interceptor|__asan|__sanitizer|/libc\.so|sysdeps|in (__(mem|str)[a-z_0-9]*|raise|abort|malloc|free|calloc|realloc) ' |
     head -1 | grep -q 'libhdf5'
 }
 
-export -f run_one inside_hdf5
+export -f run_one reads_hdf5 inside_hdf5
 printf '%s\n' "${targets[@]}" | xargs -P 2 -I{} bash -c 'run_one "$1" "$2"' _ {} "$seconds" || exit 1

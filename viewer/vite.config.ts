@@ -1,5 +1,13 @@
 import { defineConfig } from "vitest/config";
 
+/** The time that only a test which hangs takes: a busy machine draws a picture a second. */
+const kInChromium = {
+  globalSetup: "e2e/support/needs_chromium.ts",
+  testTimeout: 240_000,
+  hookTimeout: 120_000,
+  expect: { poll: { timeout: 60_000 } },
+};
+
 export default defineConfig({
   // The program serves the page at its root; relative addresses let it stand anywhere.
   base: "./",
@@ -16,22 +24,8 @@ export default defineConfig({
     fileParallelism: false,
     projects: [
       { test: { name: "unit", include: ["test/**/*.test.ts"] } },
-      {
-        test: {
-          name: "page",
-          include: ["e2e/page/*.test.ts"],
-          testTimeout: 60_000,
-          hookTimeout: 60_000,
-        },
-      },
-      {
-        test: {
-          name: "play",
-          include: ["e2e/play/*.test.ts"],
-          testTimeout: 120_000,
-          hookTimeout: 120_000,
-        },
-      },
+      { test: { name: "page", include: ["e2e/page/*.test.ts"], ...kInChromium } },
+      { test: { name: "play", include: ["e2e/play/*.test.ts"], ...kInChromium } },
     ],
   },
 });

@@ -52,8 +52,7 @@ Expected<wire::PayloadUnion> read_client_frame(std::span<const std::uint8_t> byt
   Expected<std::unique_ptr<wire::FrameT>> frame = wire::decode(bytes);
   if (!frame) return fail(std::move(frame.error()));
   wire::PayloadUnion& payload = (*frame)->payload;
-  if (right_to_send(payload.type) == Right::nobody || payload.value == nullptr)
-    return fail("a frame that is not a client's to send");
+  if (right_to_send(payload.type) == Right::nobody) return fail("a frame that is not a client's to send");
   if (!has_finite_numbers(payload)) return fail("a frame with a number that is missing or not finite");
   return std::move(payload);
 }

@@ -15,6 +15,9 @@ using mesh::io::Hdf5Quiet;
 
 constexpr std::size_t kLongestText = std::size_t{1} << 16;
 constexpr hsize_t kLargestChunk = hsize_t{1} << 24;  // bytes; a recorder's are a hundredth of that
+/// What a writer may be in the middle of is read again until its checksum is right. HDF5 waits 1 ns before the second
+/// attempt, twice as long before each that follows, and by itself makes 100: for ever, where a file is garbled.
+constexpr unsigned kAttempts = 20;
 
 /// A string of fixed size, as a recorder writes them; empty: none.
 std::string text_attribute(hid_t file, const char* name) {
@@ -66,7 +69,9 @@ Expected<RecordingFile> RecordingFile::open(const std::filesystem::path& path) {
   out.file_bytes_ = std::filesystem::file_size(path, code);
   if (code || !has_signature(out.name_)) return out.wrong("not an HDF5 file");
   // As one who reads while another writes: so a file opens whose writer was killed.
-  out.file_ = {H5Fopen(out.name_.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT), H5Fclose};
+  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_metadata_read_attempts(access, kAttempts);
+  out.file_ = {H5Fopen(out.name_.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access), H5Fclose};
   if (!out.file_.valid()) return out.wrong("cannot be opened: cut short, or not written by a recorder");
   if (Expected<void> done = out.read_head(); !done) return fail(std::move(done.error()));
 

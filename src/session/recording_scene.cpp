@@ -1,10 +1,68 @@
 #include "session/recording_scene.h"
 
+#include <set>
+#include <utility>
+
 #include <nlohmann/json.hpp>
 
 namespace rhexis::session {
 
 using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// Takes the one form that bytes_of writes, and stops at anything else: the library reads what is nested by recursion,
+/// as deep as a file of a stranger asks for.
+class SceneReader final : public nlohmann::json_sax<Json> {
+ public:
+  bool start_object(std::size_t /*count*/) override { return !std::exchange(begun_, true); }
+  bool end_object() override { return true; }
+  bool key(std::string& name) override {
+    key_ = name;
+    return seen_.insert(name).second;
+  }
+  bool start_array(std::size_t /*count*/) override {
+    if (in_list_ || key_ != "overrides") return false;
+    in_list_ = true;
+    return true;
+  }
+  bool end_array() override {
+    in_list_ = false;
+    return true;
+  }
+  bool binary(Json::binary_t& value) override {
+    std::string* const to = place();
+    if (to != nullptr) to->assign(value.begin(), value.end());
+    return to != nullptr;
+  }
+  bool null() override { return false; }
+  bool boolean(bool /*value*/) override { return false; }
+  bool number_integer(std::int64_t /*value*/) override { return false; }
+  bool number_unsigned(std::uint64_t /*value*/) override { return false; }
+  bool number_float(double /*value*/, const std::string& /*text*/) override { return false; }
+  bool string(std::string& /*value*/) override { return false; }
+  bool parse_error(std::size_t /*at*/, const std::string& /*token*/, const Json::exception& /*what*/) override {
+    return false;
+  }
+
+  [[nodiscard]] bool is_whole() const { return seen_ == std::set<std::string>{"file", "text", "overrides"}; }
+  [[nodiscard]] SceneChoice& scene() { return scene_; }
+
+ private:
+  std::string* place() {
+    if (in_list_) return &scene_.overrides.emplace_back();
+    if (key_ == "file") return &scene_.file;
+    return key_ == "text" ? &scene_.text : nullptr;
+  }
+
+  SceneChoice scene_;
+  std::set<std::string> seen_;
+  std::string key_;
+  bool begun_ = false;
+  bool in_list_ = false;
+};
+
+}  // namespace
 
 /// CBOR, which keeps texts as they are, whatever their bytes.
 std::vector<std::uint8_t> bytes_of(const SceneChoice& scene) {
@@ -18,21 +76,10 @@ std::vector<std::uint8_t> bytes_of(const SceneChoice& scene) {
 }
 
 Expected<SceneChoice> parse_scene_choice(std::span<const std::uint8_t> bytes) {
-  const Json json = Json::from_cbor(bytes.begin(), bytes.end(), /*strict=*/true, /*allow_exceptions=*/false);
-  const auto read = [](const Json& value, std::string& out) {
-    if (value.is_binary()) out.assign(value.get_binary().begin(), value.get_binary().end());
-    return value.is_binary();
-  };
-  SceneChoice scene;
-  const bool whole = json.is_object() && json.contains("file") && read(json["file"], scene.file) &&
-                     json.contains("text") && read(json["text"], scene.text) && json.contains("overrides") &&
-                     json["overrides"].is_array();
-  if (!whole) return fail("a scene in it cannot be read");
-  for (const Json& override : json["overrides"]) {
-    scene.overrides.emplace_back();
-    if (!read(override, scene.overrides.back())) return fail("a scene in it cannot be read");
-  }
-  return scene;
+  SceneReader reader;
+  const bool read = Json::sax_parse(bytes.begin(), bytes.end(), &reader, Json::input_format_t::cbor, /*strict=*/true);
+  if (!read || !reader.is_whole()) return fail("a scene in it cannot be read");
+  return std::move(reader.scene());
 }
 
 }  // namespace rhexis::session

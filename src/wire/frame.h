@@ -27,8 +27,9 @@ template <typename PayloadT>
 /// What stands behind the template: takes a filled frame.
 [[nodiscard]] SharedMessage encode_frame(const FrameT& frame);
 
-/// Verified before anything in it is read: no offset leaves `bytes`, whatever they say. Errors: not a frame of this
-/// schema, a frame without payload.
+/// `bytes` begin where memory from `new` does. Verified before anything in them is read: no offset leaves `bytes`,
+/// whatever they say, and what is unpacked is no more than a small multiple of them. The payload is there. Errors: not
+/// a frame of this schema, a frame without payload.
 [[nodiscard]] Expected<std::unique_ptr<FrameT>> decode(std::span<const std::uint8_t> bytes);
 
 /// Newest wins: a client that is slow may miss it.

@@ -167,6 +167,18 @@ TEST_F(RecordedPlate, FilesThatAreNoneAreRefusedAndACutOneDoesNotCrash) {
               testing::HasSubstr("cannot be opened"));
 }
 
+TEST_F(RecordedPlate, AGarbledFileIsRefusedAtOnce) {
+  std::ifstream in(recording(), std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  constexpr std::size_t kChecksum = 44;  // of the superblock
+  bytes[kChecksum] ^= 1;
+  const auto begin = std::chrono::steady_clock::now();
+  const Expected<RecordingFile> file = RecordingFile::open(folder_->write("garbled.h5", bytes));
+  ASSERT_FALSE(file.has_value());
+  EXPECT_THAT(file.error().message(), testing::HasSubstr("cannot be opened"));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+}
+
 TEST_F(RecordedPlate, IsPlayedAsItWasSeenAndSoughtBothWays) {
   test::KeptFrames shown;
   Expected<std::unique_ptr<ReplaySource>> source = ReplaySource::open(recording(), shown);

@@ -27,16 +27,17 @@ STAND_INS = {
 
 
 class Install(unittest.TestCase):
-    def run_install(self, *levels, missing="", unknown="", fail="", debian=True):
+    def run_install(self, *levels, missing="", unknown="", fail="", debian=True, node=""):
         """(exit code, stdout, stderr, calls of apt-get)"""
         with tempfile.TemporaryDirectory() as folder:
-            for name, body in STAND_INS.items():
+            stand_ins = STAND_INS | ({"node": f"echo {node}", "npm": ""} if node else {})
+            for name, body in stand_ins.items():
                 if debian or name != "dpkg-query":
                     path = Path(folder) / name
                     path.write_text(f"#!/bin/bash\n{body}\n")
                     path.chmod(0o755)
             # Only what the script itself needs of the real machine.
-            for name in ("bash", "env", "grep", "tail", "mktemp", "rm"):
+            for name in ("bash", "env", "grep", "sed", "tail", "mktemp", "rm"):
                 (Path(folder) / name).symlink_to(shutil.which(name))
             log = Path(folder) / "log"
             log.touch()
@@ -66,6 +67,16 @@ class Install(unittest.TestCase):
         self.assertEqual(self.run_install("build", missing="clang-16")[3], [])
         self.assertEqual(len(self.run_install("test", missing="clang-16")[3]), 2)
         self.assertEqual(len(self.run_install(missing="clang-16")[3]), 2)
+
+    def test_leaves_a_node_alone_that_is_new_enough(self):
+        for level in ("viewer", "test"):
+            self.assertEqual(self.run_install(level, missing="nodejs npm", node="v20.1.0")[3], [])
+            for node in ("v12.22.12", ""):
+                calls = self.run_install(level, missing="nodejs npm", node=node)[3]
+                self.assertEqual(calls[1].split()[-2:], ["nodejs", "npm"])
+
+    def test_testing_needs_a_browser(self):
+        self.assertEqual(self.run_install("test", missing="chromium")[3][1].split()[-1], "chromium")
 
     def test_names_a_package_that_apt_does_not_know(self):
         code, _, err, calls = self.run_install("build", missing="cmake libtbb-dev", unknown="libtbb-dev")

@@ -45,6 +45,72 @@ TEST(Frame, WithoutPayloadIsRefused) {
   EXPECT_FALSE(wire::decode({}).has_value());
 }
 
+TEST(Frame, OfAKindWithoutItsTableIsRefused) {
+  flatbuffers::FlatBufferBuilder builder;
+  // Of a kind that is known, and of one that is not.
+  for (const int kind : {static_cast<int>(wire::Payload::Grasp), 200}) {
+    builder.Clear();
+    wire::FinishFrameBuffer(builder, wire::CreateFrame(builder, static_cast<wire::Payload>(kind)));
+    EXPECT_FALSE(wire::decode({builder.GetBufferPointer(), builder.GetSize()}).has_value()) << kind;
+  }
+  builder.Clear();
+  wire::FinishFrameBuffer(
+      builder, wire::CreateFrame(builder, static_cast<wire::Payload>(200), wire::CreateReset(builder).Union()));
+  EXPECT_FALSE(wire::decode({builder.GetBufferPointer(), builder.GetSize()}).has_value());
+}
+
+TEST(Frame, ThatWouldUnpackToFarMoreThanItsBytesIsRefused) {
+  constexpr std::size_t kMany = 10'000;
+  const auto refuses = [](flatbuffers::FlatBufferBuilder& builder, wire::Payload kind,
+                          flatbuffers::Offset<void> payload) {
+    wire::FinishFrameBuffer(builder, wire::CreateFrame(builder, kind, payload));
+    const auto frame = wire::decode({builder.GetBufferPointer(), builder.GetSize()});
+    return !frame && frame.error().what == "a frame whose lists share their entries";
+  };
+  {
+    flatbuffers::FlatBufferBuilder builder;
+    const auto front = wire::CreateFront(builder, builder.CreateVectorOfStructs(std::vector<wire::Vec3>(kMany)));
+    const auto fronts = builder.CreateVector(std::vector(kMany, front));
+    wire::EditBuilder edit(builder);
+    edit.add_fronts(fronts);
+    const auto whole = edit.Finish();
+    EXPECT_TRUE(refuses(builder, wire::Payload::Edit, whole.Union()));
+  }
+  {
+    flatbuffers::FlatBufferBuilder builder;
+    const auto scenes = builder.CreateVector(std::vector(kMany, builder.CreateString(std::string(kMany, 'x'))));
+    wire::HelloBuilder hello(builder);
+    hello.add_scenes(scenes);
+    const auto whole = hello.Finish();
+    EXPECT_TRUE(refuses(builder, wire::Payload::Hello, whole.Union()));
+  }
+  wire::HelloT honest;
+  honest.scenes.assign(kMany, std::string(100, 'x'));
+  EXPECT_TRUE(wire::decode(wire::encode(std::move(honest))->bytes).has_value());
+}
+
+TEST(Frame, WithNumbersThatAreNotAlignedIsRefused) {
+  wire::TimelineT timeline;
+  timeline.marks = {1.0, 2.0, 3.0};
+  std::vector<std::uint8_t> bytes = wire::encode(std::move(timeline))->bytes;
+  const wire::Frame* frame = wire::GetFrame(bytes.data());
+  const std::uint8_t* list = reinterpret_cast<const std::uint8_t*>(frame->payload_as_Timeline()->marks());
+  const auto at = static_cast<std::size_t>(list - bytes.data());
+  // The list's length goes to where its first number was, and all that points to it after it.
+  const std::size_t points_to_it = [&] {
+    for (std::size_t k = 0; k < at; k += 4)
+      if (flatbuffers::ReadScalar<flatbuffers::uoffset_t>(&bytes[k]) == at - k) return k;
+    return at;
+  }();
+  ASSERT_LT(points_to_it, at);
+  flatbuffers::WriteScalar<flatbuffers::uoffset_t>(&bytes[points_to_it],
+                                                   static_cast<flatbuffers::uoffset_t>(at + 4 - points_to_it));
+  flatbuffers::WriteScalar<flatbuffers::uoffset_t>(&bytes[at + 4], 2);
+  const auto decoded = wire::decode(bytes);
+  ASSERT_FALSE(decoded.has_value());
+  EXPECT_EQ(decoded.error().what, "a frame whose numbers are not aligned");
+}
+
 TEST(Frame, CutOffOrGarbledNeverReadsPastItsEnd) {
   const std::vector<std::uint8_t> whole = wire::encode(small_edit())->bytes;
   for (std::size_t size = 0; size < whole.size(); ++size) {

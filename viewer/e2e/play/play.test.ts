@@ -58,7 +58,10 @@ async function reset(): Promise<void> {
   await page.waitForFunction((before) => window.rhexis?.state != null && window.rhexis.state.epoch > before, epoch);
 }
 
-/** Takes the plate beside its crack and pulls it to the left until it has torn `advances` times. The button stays down. */
+/**
+ * Takes the plate beside its crack and pulls it to the left until it has torn `advances` times. The button stays down.
+ * However slow the machine is, the hand goes no further than the body has followed it.
+ */
 async function tear(advances: number): Promise<void> {
   const [x, y] = await pixelOf(page, kBeside);
   await page.mouse.move(x + 2, y - 3);
@@ -66,8 +69,9 @@ async function tear(advances: number): Promise<void> {
   await until(page, (handle) => handle.state?.held === true);
   const before = await page.evaluate(() => window.rhexis?.advances ?? 0);
   for (let k = 1; k <= 80; ++k) {
+    const tick = await page.evaluate(() => window.rhexis?.state?.tick ?? 0);
     await page.mouse.move(x - 4 * k, y - 3);
-    await page.waitForTimeout(30);
+    await page.waitForFunction((before) => (window.rhexis?.state?.tick ?? 0) > before + 20, tick);
     if ((await page.evaluate(() => window.rhexis?.advances ?? 0)) >= before + advances) return;
   }
   throw new Error(`the plate did not tear ${advances} times`);
@@ -92,7 +96,7 @@ describe("rhexis play", () => {
     await shoot(page, "play-torn-light");
     let compared = 0;
     let largest = 0;
-    for (let k = 0; k < 60 && compared < 12; ++k) {
+    for (let k = 0; k < 600 && compared < 12; ++k) {
       const shown = await page.evaluate(() => {
         const force = document.querySelector<HTMLElement>("#force");
         return { text: force?.textContent ?? "", tick: Number(force?.dataset["tick"]) };
@@ -110,7 +114,7 @@ describe("rhexis play", () => {
     await until(page, (handle) => handle.state?.held === false);
     // What is let go of tears no further: from here on both have to count the same.
     const advances = (): Promise<number> => page.evaluate(() => window.rhexis?.advances ?? 0);
-    await expect.poll(async () => (await advances()) - listener.advances, { timeout: 10_000 }).toBe(0);
+    await expect.poll(async () => (await advances()) - listener.advances).toBe(0);
   });
 
   it("takes a tear back, and resets", async () => {
@@ -119,7 +123,7 @@ describe("rhexis play", () => {
     await page.waitForFunction((advances) => (window.rhexis?.advances ?? advances) < advances, before);
     await reset();
     expect(await page.evaluate(() => window.rhexis?.state?.held)).toBe(false);
-    expect(await textOf(page, "#force")).toBe("0.000");
+    await expect.poll(() => textOf(page, "#force")).toBe("0.000");
     // The crack that the scene begins with is all that is left.
     await until(page, (handle) => handle.advances === 1 && handle.state?.advances === 1);
   });
@@ -186,7 +190,7 @@ describe("rhexis play", () => {
     await until(page, (handle) => JSON.parse(handle.body?.values ?? "{}")["material.young"] == 2e6 && handle.state !== null);
     await page.evaluate(() => document.querySelector("#parameters")?.scrollIntoView());
     await shoot(page, "play-parameters-dark");
-    expect(await young.inputValue()).toMatch(/^(2e6|2000000(\.0)?)$/);
+    await expect.poll(() => young.inputValue()).toMatch(/^(2e6|2000000(\.0)?)$/);
   });
 
   it("gives the hand to another page that asked for it", async () => {
@@ -194,7 +198,7 @@ describe("rhexis play", () => {
     await second.page.waitForSelector('[data-trouble="hand"]');
     await second.page.waitForSelector("#do-reset:disabled");
     await second.page.click("#hand-button");
-    await page.waitForTimeout(200);
+    await expect.poll(() => textOf(second.page, "#messages")).toContain("it is yours when it is given back");
     await page.click("#hand-button");
     await until(second.page, (handle) => handle.role?.hand === true);
     await page.waitForSelector('[data-trouble="hand"]');
@@ -209,7 +213,7 @@ describe("rhexis play", () => {
     await page.waitForSelector('[data-trouble="link"]');
     program = await Program.start(["play", kPlate], program.port);
     await until(page, (handle) => handle.link === "open" && handle.state !== null && handle.body?.title.startsWith("Plate") === true);
-    expect(await textOf(page, "#messages")).toContain("Connected again");
+    await expect.poll(() => textOf(page, "#messages")).toContain("Connected again");
     await tear(1);
     await page.mouse.up();
   });
@@ -241,7 +245,7 @@ describe("rhexis replay", () => {
   it("plays what was recorded, and can be scrubbed", async () => {
     program = await Program.start(["replay", recording], await freePort());
     ({ page, errors } = await open(browser, program.url));
-    expect(await page.isVisible("#timeline")).toBe(true);
+    await page.waitForSelector("#timeline:visible");
     expect(await page.isVisible("#transport")).toBe(false);
     await until(page, (handle) => (handle.timeline?.marks.length ?? 0) >= 2);
     const seek = async (key: string): Promise<void> => {

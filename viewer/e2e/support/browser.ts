@@ -12,13 +12,18 @@ export const kPage = process.env["RHEXIS_PAGE"] ?? join(kRoot, "build/release/sh
 /** Where screenshots are kept. */
 export const kArtefacts = process.env["RHEXIS_ARTEFACTS"] ?? join(kRoot, "build/e2e");
 export const kRepository = kRoot;
+/** Debian's, unless another is named. */
+export const kChromium = process.env["CHROMIUM"] ?? "/usr/bin/chromium";
+/** ms that a page has to come to what a test waits for: long, since it draws without a graphics card on a busy machine. */
+const kPatience = 60_000;
 
-/** Debian's Chromium, drawing without a graphics card and asking nobody outside of this machine for anything. */
+/** Chromium, drawing without a graphics card and asking nobody outside of this machine for anything. */
 export function launch(): Promise<Browser> {
   return chromium.launch({
-    executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium",
+    executablePath: kChromium,
     args: [
       "--no-sandbox", // as root, as CI often is, Chromium starts no other way
+      "--disable-dev-shm-usage", // 64 MiB in a container: too little for a picture
       "--use-angle=swiftshader",
       "--enable-unsafe-swiftshader",
       "--ignore-gpu-blocklist",
@@ -47,6 +52,7 @@ export async function open(browser: Browser, url: string, look: Look = {}): Prom
     colorScheme: look.dark ? "dark" : "light",
     reducedMotion: look.reducedMotion ? "reduce" : "no-preference",
   });
+  page.setDefaultTimeout(kPatience);
   const errors: string[] = [];
   page.on("pageerror", (error) => errors.push(String(error)));
   page.on("console", (message) => {
@@ -57,15 +63,21 @@ export async function open(browser: Browser, url: string, look: Look = {}): Prom
   await page.goto(url);
   await page.waitForFunction(() => window.rhexis?.state != null);
   // One picture later the view fits the body, and points of it are where they are said to be.
-  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await pictures(page, 1);
   return { page, errors };
 }
 
 /** Waits until what `read` makes of the page's knowledge is true. */
-export async function until(page: Page, read: (handle: DebugHandle) => boolean, timeout = 30_000): Promise<void> {
+export async function until(page: Page, read: (handle: DebugHandle) => boolean): Promise<void> {
   // As a function, which the page's policy lets a debugger bring in; a text would have to be evaluated by the page itself.
   const isSo = new Function(`return (${read.toString()})(window.rhexis)`) as () => boolean;
-  await page.waitForFunction(isSo, undefined, { timeout });
+  await page.waitForFunction(isSo);
+}
+
+/** Waits until `count` more pictures have been drawn from beginning to end. */
+export async function pictures(page: Page, count: number): Promise<void> {
+  const before = await page.evaluate(() => window.rhexis?.pictures ?? 0);
+  await page.waitForFunction((wanted) => (window.rhexis?.pictures ?? 0) >= wanted, before + count);
 }
 
 export async function pixelOf(page: Page, point: readonly [number, number, number]): Promise<readonly [number, number]> {

@@ -4,7 +4,7 @@ import { dirname, join } from "node:path";
 
 import type { Browser, Page } from "playwright-core";
 
-import { open } from "./browser";
+import { open, pictures } from "./browser";
 
 /** What of the emulated device the tests move. */
 interface EmulatedDevice {
@@ -39,7 +39,7 @@ export async function enterHeadset(page: Page): Promise<void> {
   await page.click("#headset-button");
   await page.waitForFunction(() => window.rhexis?.isInHeadset === true);
   // The controllers are there once the session has drawn.
-  await page.waitForTimeout(300);
+  await pictures(page, 2);
 }
 
 export async function leaveHeadset(page: Page): Promise<void> {
@@ -62,7 +62,8 @@ export async function aim(page: Page, at: readonly [number, number, number], by:
     },
     [at, by] as const,
   );
-  await page.waitForTimeout(200);
+  // A trigger takes hold where the picture before it has seen the controller.
+  await pictures(page, 2);
 }
 
 declare global {

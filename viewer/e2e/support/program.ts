@@ -37,7 +37,7 @@ export class Program {
     if (!existsSync(kCommand)) throw new Error(`there is no ${kCommand} (make builds it; RHEXIS_COMMAND names another)`);
     const child = spawn(kCommand, [...args, "--port", String(port), "--page", kPage, "--recordings", kScratch, "--no-browser"], { cwd: kRepository, stdio: ["ignore", "pipe", "pipe"] });
     const program = new Program(child, port);
-    for (let k = 0; k < 300; ++k) {
+    for (let k = 0; k < 900; ++k) {
       if (child.exitCode !== null) throw new Error(`rhexis ended with ${child.exitCode}: ${program.output}`);
       const answer = await fetch(program.url).catch(() => null);
       if (answer?.ok) return program;

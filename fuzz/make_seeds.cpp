@@ -1,0 +1,115 @@
+// Makes the seeds of the formats that are ours alone:
+//
+//     build/fuzz/bin/rhexis_fuzz_seeds fuzz/corpus
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "fuzz/recording_parts.h"
+#include "session/recording_head.h"
+#include "session/recording_scene.h"
+#include "wire/frame.h"
+
+namespace {
+
+using namespace rhexis;
+using Bytes = std::vector<std::uint8_t>;
+
+void write(const std::filesystem::path& path, const Bytes& bytes) {
+  std::filesystem::create_directories(path.parent_path());
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+Bytes read(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Of each form of frame one that has all its fields: lists in lists, numbers, texts, nothing.
+std::vector<wire::SharedMessage> frames() {
+  wire::HelloT hello;
+  hello.version = "1";
+  hello.scenes = {"a.toml", "b.toml"};
+  hello.declarations = "[]";
+  wire::FrontT front;
+  front.points = {{0.1, 0.0, 0.0}, {0.1, 0.1, 0.0}};
+  wire::AdvanceT advance;
+  advance.length = 0.1;
+  advance.force_before = std::make_unique<wire::Vec3>(1.0, 0.0, 0.0);
+  wire::BodyT body;
+  body.scene = "a.toml";
+  body.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  body.node = {0, 1, 2};
+  body.faces = {0, 1, 2};
+  body.fronts.push_back(std::make_unique<wire::FrontT>(front));
+  body.advances.push_back(std::make_unique<wire::AdvanceT>(advance));
+  wire::EditT edit;
+  edit.topology = 1;
+  edit.moved = {2};
+  edit.moved_to = {0, 1, 1};
+  edit.slots = {0};
+  edit.faces = {0, 1, 2};
+  edit.fronts.push_back(std::make_unique<wire::FrontT>(front));
+  edit.advance = std::make_unique<wire::AdvanceT>(advance);
+  wire::StateT state;
+  state.displacement.assign(9, 0.5F);
+  state.hand = std::make_unique<wire::Vec3>(0.1, 0.0, 0.0);
+  state.rates = std::make_unique<wire::RatesT>();
+  state.trace.assign(3, 1.0F);
+  wire::NoticeT notice;
+  notice.text = "words";
+  wire::TimelineT timeline;
+  timeline.marks = {1.0, 2.0};
+  wire::SetValueT set_value;
+  set_value.key = "material.young";
+  set_value.value = "2e6";
+  wire::GraspT grasp;
+  grasp.weights = std::make_unique<wire::Vec3>(0.5, 0.25, 0.25);
+  return {wire::encode(std::move(hello)),     wire::encode(std::move(body)),   wire::encode(std::move(edit)),
+          wire::encode(std::move(state)),     wire::encode(std::move(notice)), wire::encode(std::move(timeline)),
+          wire::encode(std::move(set_value)), wire::encode(std::move(grasp)),  wire::encode(wire::ResetT())};
+}
+
+fuzz::RecordingParts recording() {
+  fuzz::RecordingParts parts;
+  const std::string settings = session::text_of({.version = "1", .device = "pointer"});
+  parts.settings.assign(settings.begin(), settings.end());
+  parts.ticks.resize(3);
+  parts.steps.resize(2);
+  const auto add = [&](std::vector<session::PieceRow>& table, std::uint64_t kind, const Bytes& bytes) {
+    table.push_back({.at = 1, .kind = kind, .offset = parts.bytes.size(), .size = bytes.size()});
+    parts.bytes.insert(parts.bytes.end(), bytes.begin(), bytes.end());
+  };
+  add(parts.scenes, 0, session::bytes_of({.file = "a.toml", .text = "title = \"A\"", .overrides = {"a.b=1"}}));
+  for (const wire::SharedMessage& frame : frames()) {
+    const bool is_command = frame->kind > wire::Payload::Pong;
+    add(is_command ? parts.commands : parts.frames, static_cast<std::uint64_t>(frame->kind), frame->bytes);
+  }
+  parts.flushes = {{.scenes = 1, .bytes = parts.scenes[0].size},
+                   {parts.ticks.size(), parts.steps.size(), parts.commands.size(), parts.scenes.size(),
+                    parts.frames.size(), parts.bytes.size()}};
+  return parts;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  if (count != 2) {
+    std::fputs("usage: rhexis_fuzz_seeds FOLDER\n", stderr);
+    return 2;
+  }
+  const std::filesystem::path corpus = words[1];
+  for (const wire::SharedMessage& frame : frames())
+    write(corpus / "frame" / wire::EnumNamePayload(frame->kind), frame->bytes);
+  Bytes parts = fuzz::input_of(recording());
+  parts.insert(parts.begin(), 1);
+  write(corpus / "recording/parts", parts);
+  const std::filesystem::path file = corpus / "recording/file";
+  fuzz::write_recording(file, recording());
+  Bytes whole = read(file);
+  whole.insert(whole.begin(), 0);
+  write(file, whole);
+  return 0;
+}
