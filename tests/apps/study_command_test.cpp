@@ -48,6 +48,16 @@ TEST(StudyCommand, MapsWhatAHapticDeviceBears) {
   EXPECT_EQ(test::run_rhexis("study haptic-stability --delay 100 --out '" + folder.string() + "'").code, 2);
 }
 
+TEST(StudyCommand, MeasuresALiveSession) {
+  const std::filesystem::path folder = test::fresh_folder("live");
+  const std::string out = " --out '" + folder.string() + "'";
+  const test::Ran ran = test::run_rhexis("study live --seconds 1 --nodes 200 --clients 1 --device script" + out);
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.out, HasSubstr("ticks within 1 ms of their time"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "live-ticks.svg"));
+  EXPECT_EQ(test::run_rhexis("study live --seconds 1 --nodes 200 --device pointer" + out).code, 2);
+}
+
 TEST(StudyCommand, HelpNamesTheWays) {
   EXPECT_THAT(test::run_rhexis("study restructuring --help").out, HasSubstr("exact-all-work"));
 }
