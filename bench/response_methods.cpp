@@ -132,7 +132,7 @@ Way follow_tree(const Pull& pull, mesh::TornMesh& body, bool is_known) {
     return Mat3(response->compliance());
   };
   way.displace = [response](std::span<const NodeId> nodes, const VectorX& force, VectorX& out) {
-    response->displacement(nodes, force, out);
+    response->displacement(nodes, force, 1.0, out);
   };
   return way;
 }

@@ -10,12 +10,6 @@
 #include "response/followed.h"
 
 namespace rhexis::response {
-namespace {
-
-/// What a force has beyond the directions that are known, below this part of it, is rounding.
-constexpr double kSameDirection = 1e-14;
-
-}  // namespace
 
 /// A new factor, made beside the caller from a copy of the mesh, since the caller edits his.
 struct ExactResponse::Preparation {
@@ -178,7 +172,6 @@ void ExactResponse::solve_held() {
   forward_ = tree_->forward(dof, rows);
   compliance_ = forward_.gram;
   rest_ = forward_.with_load + given;
-  known_.any = false;
 }
 
 bool ExactResponse::is_in_solve(NodeId node) const {
@@ -194,67 +187,39 @@ void ExactResponse::check_forces(const VectorX& held_forces) const {
   RHEXIS_CHECK(held_forces.size() == rest_.size(), "{} forces on {} held dofs", held_forces.size(), rest_.size());
 }
 
-/// Without what is prescribed, which the tree leaves at zero.
-void ExactResponse::solve_at(std::span<const NodeId> nodes, const VectorX& held_forces, double loads, VectorX& out) {
+/// y . y = 0: no load, and no support that moves.
+bool ExactResponse::is_pushed(const VectorX& held_forces, double loads) const {
+  return !held_forces.isZero(0.0) || (loads != 0.0 && tree_->load_energy() > 0.0);
+}
+
+void ExactResponse::displacement(std::span<const NodeId> nodes, const VectorX& held_forces, double loads,
+                                 VectorX& out) {
+  check_forces(held_forces);
   std::vector<std::int32_t> some;
   for (const NodeId node : nodes) {
     if (is_in_solve(node)) some.push_back(node.value());
   }
-  tree_->backward_at(some, {}, &forward_, held_forces, loads, x_);
+  const bool pushed = is_pushed(held_forces, loads);
+  if (pushed) tree_->backward_at(some, {}, &forward_, held_forces, loads, x_);
   out.setZero(static_cast<Eigen::Index>(3 * nodes.size()));
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (!is_in_solve(nodes[i])) continue;
-    out.segment<3>(static_cast<Eigen::Index>(3 * i)) = x_.segment<3>(3 * Eigen::Index{nodes[i].value()});
+    auto u = out.segment<3>(static_cast<Eigen::Index>(3 * i));
+    u = loads * prescribed(nodes[i]);  // which the tree leaves at zero
+    if (pushed) u += x_.segment<3>(3 * Eigen::Index{nodes[i].value()});
   }
 }
 
-void ExactResponse::displacement(std::span<const NodeId> nodes, const VectorX& held_forces, VectorX& out) {
+void ExactResponse::whole_displacement(const VectorX& held_forces, double loads, VectorX& out) {
   check_forces(held_forces);
-  if (!known_.any || !std::equal(nodes.begin(), nodes.end(), known_.nodes.begin(), known_.nodes.end())) {
-    known_.nodes.assign(nodes.begin(), nodes.end());
-    known_.force.resize(held_forces.size(), 0);
-    known_.moved.resize(static_cast<Eigen::Index>(3 * nodes.size()), 0);
-    if (tree_->load_energy() > 0.0) {
-      solve_at(nodes, VectorX::Zero(held_forces.size()), 1.0, known_.rest);
-    } else {  // y . y = 0: no loads, and no support moves
-      known_.rest.setZero(static_cast<Eigen::Index>(3 * nodes.size()));
-    }
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      if (is_in_solve(nodes[i])) known_.rest.segment<3>(static_cast<Eigen::Index>(3 * i)) += prescribed(nodes[i]);
-    }
-    known_.any = true;
+  if (is_pushed(held_forces, loads)) {
+    tree_->backward({}, &forward_, held_forces, loads, out);
+  } else {
+    out.setZero(3 * static_cast<Eigen::Index>(mesh_.mesh().node_count()));
   }
-  out = known_.rest;
-  VectorX left = held_forces;
-  const auto use = [&](Eigen::Index column, double part) {
-    left -= part * known_.force.col(column);
-    out += part * known_.moved.col(column);
-  };
-  for (Eigen::Index column = 0; column < known_.force.cols(); ++column) use(column, known_.force.col(column).dot(left));
-  const double more = left.norm();
-  if (!(more > kSameDirection * held_forces.norm())) return;
-  if (known_.force.cols() == held_forces.size()) {  // as many as there can be: rounding has made some depend on others
-    known_.any = false;
-    displacement(nodes, held_forces, out);
-    return;
-  }
-  const VectorX direction = left / more;
-  VectorX moved;
-  solve_at(nodes, direction, 0.0, moved);
-  const Eigen::Index column = known_.force.cols();
-  known_.force.conservativeResize(Eigen::NoChange, column + 1);
-  known_.moved.conservativeResize(Eigen::NoChange, column + 1);
-  known_.force.col(column) = direction;
-  known_.moved.col(column) = moved;
-  use(column, more);
-}
-
-void ExactResponse::whole_displacement(const VectorX& held_forces, VectorX& out) {
-  check_forces(held_forces);
-  tree_->backward({}, &forward_, held_forces, 1.0, out);
   for (std::size_t i = 0; i < mesh_.mesh().node_count() && model_.moves_supports; ++i) {
     const NodeId node(i);
-    if (is_in_solve(node)) out.segment<3>(static_cast<Eigen::Index>(3 * i)) += prescribed(node);
+    if (is_in_solve(node)) out.segment<3>(static_cast<Eigen::Index>(3 * i)) += loads * prescribed(node);
   }
 }
 
@@ -271,7 +236,7 @@ double ExactResponse::stored_energy(const VectorX& held_forces) {
 }
 
 std::size_t ExactResponse::memory_bytes() const {
-  std::size_t doubles = static_cast<std::size_t>(x_.size() + known_.moved.size());
+  std::size_t doubles = static_cast<std::size_t>(x_.size());
   for (const Eigen::MatrixXd& y : forward_.y) doubles += static_cast<std::size_t>(y.size());
   return tree_->memory_bytes() + sizeof(double) * doubles;
 }

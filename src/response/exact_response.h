@@ -45,32 +45,21 @@ class ExactResponse final : public Response {
 
   [[nodiscard]] const Eigen::MatrixXd& compliance() const override { return compliance_; }
   [[nodiscard]] const VectorX& rest() const override { return rest_; }
-  /// The first forces after an edit, or for other nodes, are solved for; in one topology everything is linear, and what
-  /// lies in their span is then a sum of few columns.
-  void displacement(std::span<const NodeId> nodes, const VectorX& held_forces, VectorX& out) override;
-  void whole_displacement(const VectorX& held_forces, VectorX& out) override;
+  void displacement(std::span<const NodeId> nodes, const VectorX& held_forces, double loads, VectorX& out) override;
+  void whole_displacement(const VectorX& held_forces, double loads, VectorX& out) override;
   [[nodiscard]] double stored_energy(const VectorX& held_forces) override;
   [[nodiscard]] std::size_t memory_bytes() const override;
 
  private:
   struct Preparation;
   using Tree = std::shared_ptr<const linalg::FrontTree>;
-  /// What some nodes do under the loads, and under some forces on the held nodes.
-  struct Known {
-    std::vector<NodeId> nodes;
-    VectorX rest;           ///< m, 3 per node
-    Eigen::MatrixXd force;  ///< columns of length 1
-    Eigen::MatrixXd moved;  ///< m/N, by each of them
-    bool any = false;
-  };
-
   ExactResponse(const mesh::TornMesh& mesh, ExactSettings settings);
   Tree take_up(const mesh::MeshEdit& edit, std::span<const Focus> focus, FollowReport& report);
   void prepare(std::span<const Focus> focus);
   bool adopt(Tree next);
   void solve_held();
-  void solve_at(std::span<const NodeId> nodes, const VectorX& held_forces, double loads, VectorX& out);
   void check_forces(const VectorX& held_forces) const;
+  [[nodiscard]] bool is_pushed(const VectorX& held_forces, double loads) const;
   [[nodiscard]] bool is_in_solve(NodeId node) const;
   [[nodiscard]] Vec3 prescribed(NodeId node) const;
   [[nodiscard]] double potential_energy(const VectorX& held_forces) const;
@@ -88,7 +77,6 @@ class ExactResponse final : public Response {
   linalg::FrontTree::Forward forward_;  ///< of unit forces on the held nodes
   Eigen::MatrixXd compliance_;
   VectorX rest_;
-  Known known_;
   VectorX x_;                                 ///< work
   std::unique_ptr<Preparation> preparation_;  ///< null without background; last, so that it ends first
 };

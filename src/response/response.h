@@ -47,11 +47,11 @@ class Response {
   [[nodiscard]] virtual const Eigen::MatrixXd& compliance() const = 0;
   /// Displacement of the held nodes by the loads alone, m, 3 per node.
   [[nodiscard]] virtual const VectorX& rest() const = 0;
-  /// Displacement (m, 3 per node of `nodes`) by the loads and by forces on the held nodes (N, 3 per held node). Nodes
-  /// within the focus of the last call are cheap.
-  virtual void displacement(std::span<const NodeId> nodes, const VectorX& held_forces, VectorX& out) = 0;
-  /// Of every node of the body, m; zero at nodes out of the solve.
-  virtual void whole_displacement(const VectorX& held_forces, VectorX& out) = 0;
+  /// Displacement (m, 3 per node of `nodes`; zero out of the solve) by `loads` times the loads, moved supports among
+  /// them, and by forces on the held nodes (N, 3 per held node). Nodes within the focus of the last call are cheap.
+  virtual void displacement(std::span<const NodeId> nodes, const VectorX& held_forces, double loads, VectorX& out) = 0;
+  /// The same of every node of the body.
+  virtual void whole_displacement(const VectorX& held_forces, double loads, VectorX& out) = 0;
   /// Potential energy of the body and its loads, the hand's forces aside, with forces on the held nodes, J; relative to
   /// the equilibrium under the loads alone when the response was made. What is frozen takes its energy along.
   [[nodiscard]] virtual double stored_energy(const VectorX& held_forces) = 0;

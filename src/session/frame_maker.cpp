@@ -112,6 +112,7 @@ wire::BodyT FrameMaker::body(const Interaction& interaction) {
   out.values = scene::live_values_json(of.scene.text, of.scene.file, of.scene.overrides).value_or("{}");
   out.script = script_seconds(of.problem.pulls);
   values_.body_changed();
+  basis_.clear();
   return out;
 }
 
@@ -136,21 +137,32 @@ wire::EditT FrameMaker::edit(const Interaction& interaction, const SurfaceChange
   out.fronts = fronts_of(tear);
   out.advance = advance_of(tear.advances().back(), interaction.body().advance_time.back());
   values_.body_changed();
+  basis_.clear();
   return out;
+}
+
+const VectorX& FrameMaker::displacement(TearSession& tear) {
+  const auto held = tear.hand().nodes();
+  if (!std::equal(held.begin(), held.end(), held_.begin(), held_.end())) {
+    held_.assign(held.begin(), held.end());
+    basis_.clear();
+  }
+  tear.displacement(basis_, u_);
+  return u_;
 }
 
 wire::StateT FrameMaker::state(const Interaction& interaction, const haptics::HandState& hand) {
   TearSession& tear = interaction.tear();
   const OpenBody& of = interaction.body();
-  tear.displacement(u_);
+  const VectorX& u = displacement(tear);
   wire::StateT out;
   out.epoch = epoch_;
   out.topology = static_cast<std::uint32_t>(tear.body().topology());
   out.tick = interaction.tick();
   out.time = 1e-3 * static_cast<double>(interaction.tick());
-  surface_displacement(of.surface, u_, out.displacement);
+  surface_displacement(of.surface, u, out.displacement);
   out.field = field_;
-  values_.find(field_, tear.body(), tear.settings().body.elastic, of.surface, u_, out.values);
+  values_.find(field_, tear.body(), tear.settings().body.elastic, of.surface, u, out.values);
   if (tear.hand().holds()) {
     if (const auto face = held_face(tear.hand().point(), tear.body(), of.surface)) {
       out.held = true;

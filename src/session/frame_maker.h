@@ -27,7 +27,12 @@ class FrameMaker {
   wire::Field field_ = wire::Field::none;
   std::uint32_t epoch_ = 0;
   SurfaceValues values_;
-  VectorX u_;  ///< work: m, of every node
+  [[nodiscard]] const VectorX& displacement(TearSession& tear);
+
+  response::ForceBasis basis_;  ///< of the present topology; the picture's own, so that it has no part in the bits of
+                                ///< the physics
+  std::vector<NodeId> held_;    ///< that it is for
+  VectorX u_;                   ///< m, of every node
 };
 
 }  // namespace rhexis::session

@@ -29,9 +29,11 @@ StepOutcome Interaction::step(const haptics::HandState& hand, bool fresh) {
   follow_script(passed);
   now_ += passed;
   if (runs()) {
-    if (follows && hand.grasp == grasps_ && tear().hand().holds()) {
+    const bool stands_still = tearing_ > 0 && tearing_ < kMostAdvancesPerTick;
+    if (follows && hand.grasp == grasps_ && tear().hand().holds() && !stands_still) {
       settled_ = settled_ && vector_of(hand.hand) == by_;
       by_ = vector_of(hand.hand);
+      tearing_ = 0;
     }
     move_body();
   }
@@ -63,8 +65,10 @@ void Interaction::follow_script(std::uint64_t passed) {
 void Interaction::move_body() {
   if (settled_) return;
   const bool held = tear().hand().holds();
-  const TickReport report = tear().tick(by_, [this](const AdvanceRecord& advance) { tell_of(advance); });
+  const TickReport report = tear().tick(
+      by_, [this](const AdvanceRecord& advance) { tell_of(advance); }, 1);
   settled_ = report.advances == 0;
+  tearing_ = settled_ ? 0 : tearing_ + 1;
   if (!report.trouble.empty() && report.trouble != last_trouble_) listener_.says(wire::Level::warning, report.trouble);
   last_trouble_ = report.trouble;
   if (held && report.let_go) {
@@ -110,6 +114,7 @@ bool Interaction::hold(const Vec3& at, response::ContactMode mode) {
   torn_off_ = false;
   by_.setZero();
   settled_ = false;
+  tearing_ = 0;
   if (const Expected<void> holds = tear().grasp(at, mode); !holds) {
     say(holds.error());
     return false;
@@ -124,6 +129,7 @@ void Interaction::let_go() {
   torn_off_ = false;
   by_.setZero();
   settled_ = false;
+  tearing_ = 0;
 }
 
 }  // namespace rhexis::session

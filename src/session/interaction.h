@@ -50,8 +50,9 @@ class Interaction {
   /// or is wrong, is said, and all stays as it was.
   void carry_out(const wire::PayloadUnion& command);
 
-  /// One step of the physics: take the hand's motion, follow the script, move the body by the hand and let it tear,
-  /// publish. `fresh`: `hand` is another one than that of the last step.
+  /// One step of the physics: take the hand's motion, follow the script, move the body by the hand and let it tear
+  /// once, publish. While it tears the hand counts as standing still: so each advance has a law and a step of its own,
+  /// and the cracks are those of one long tick. `fresh`: `hand` is another one than that of the last step.
   StepOutcome step(const haptics::HandState& hand, bool fresh);
 
   /// The law to publish after the last step.
@@ -98,6 +99,7 @@ class Interaction {
   bool settled_ = false;      ///< another tick at the same place of the hand would change nothing
   std::string last_trouble_;  ///< said already
   int advances_ = 0;          ///< in the present step
+  int tearing_ = 0;           ///< steps that have torn since the hand was followed last
 };
 
 }  // namespace rhexis::session

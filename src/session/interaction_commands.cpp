@@ -113,6 +113,7 @@ void Interaction::take_up(Expected<std::unique_ptr<OpenBody>> body) {
   torn_off_ = false;
   by_.setZero();
   settled_ = false;
+  tearing_ = 0;
   last_trouble_.clear();
   listener_.has_body(/*anew=*/true);
 }

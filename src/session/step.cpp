@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 #include "base/check.h"
 #include "base/clock.h"
@@ -22,26 +23,30 @@ std::vector<Vec3> positions(const fracture::Crack& crack) {
 
 }  // namespace
 
-TickReport TearSession::tick(const Vec3& hand, const Observer& observer) {
+TickReport TearSession::tick(const Vec3& hand, const Observer& observer, int most_advances) {
   ++ticks_;
   TickReport report;
+  if (hand != hand_at_) round_ = {};
+  hand_at_ = hand;
   hand_.move(hand);
-  if (settings_.tears) tear(report, observer);
+  if (settings_.tears) tear(report, observer, most_advances);
   report.force = hand_.force();
   return report;
 }
 
-void TearSession::tear(TickReport& report, const Observer& observer) {
+void TearSession::tear(TickReport& report, const Observer& observer, int most_advances) {
   solve_local_objects();
-  bool tears = true;
-  while (tears && report.advances < kMostAdvancesPerTick && report.trouble.empty()) {
-    tears = false;
-    for (std::size_t crack = 0; crack < cracks_.size(); ++crack) {
-      if (report.advances == kMostAdvancesPerTick || !report.trouble.empty()) break;
-      if (const std::optional<Judged> judged = judge(crack)) tears = run_on(crack, *judged, report, observer) || tears;
+  while (report.advances < most_advances && report.trouble.empty()) {
+    if (round_.next < cracks_.size()) {
+      const std::size_t crack = round_.next++;
+      if (const std::optional<Judged> judged = judge(crack))
+        round_.tore = run_on(crack, *judged, report, observer) || round_.tore;
+      continue;
     }
-    if (local_.empty() && report.trouble.empty()) tears = start_crack(report, observer);
+    if (local_.empty()) round_.tore = start_crack(report, observer);
+    if (!std::exchange(round_, {}).tore) break;
   }
+  if (!report.trouble.empty()) round_ = {};
 }
 
 TickReport TearSession::impose(std::size_t crack, const Vec3& direction, double length, const Observer& observer) {

@@ -72,12 +72,14 @@ Expected<void> TearSession::open(const CrackLine& line) {
 
 Expected<void> TearSession::grasp(const Vec3& at, response::ContactMode mode) {
   Expected<void> holds = hand_.grasp(body_, at, mode, *response_);
+  round_ = {};
   make_local_objects();
   return holds;
 }
 
 void TearSession::let_go() {
   hand_.let_go(*response_);
+  round_ = {};
   make_local_objects();
 }
 
@@ -92,6 +94,7 @@ bool TearSession::undo() {
   advances_.pop_back();
   response_->go_back(edit, foci());
   hand_.follow(*response_);
+  round_ = {};
   make_local_objects();
   return true;
 }
@@ -128,6 +131,7 @@ void TearSession::make_local_objects() {
     local_.emplace_back(body_, settings_.body.elastic, surroundings_.tets_near(body_, cracks_[crack], radius_of(crack)),
                         supported_, hand_.nodes(), fracture::LocalLoads{body_force_, node_force_});
   }
+  local_basis_.assign(local_.size(), {});
   solve_local_objects();
   surface_tets_.clear();
   if (!running_.empty()) return;
@@ -138,9 +142,13 @@ void TearSession::make_local_objects() {
 
 void TearSession::solve_local_objects() {
   VectorX u;
-  for (fracture::LocalObject& local : local_) {
-    response_->displacement(local.nodes(), hand_.nodal_forces(), u);
-    local.take(u);
+  for (std::size_t k = 0; k < local_.size(); ++k) {
+    const std::vector<NodeId>& nodes = local_[k].nodes();
+    const auto solve = [&](const VectorX& forces, double loads, VectorX& out) {
+      response_->displacement(nodes, forces, loads, out);
+    };
+    local_basis_[k].displacement(hand_.nodal_forces(), solve, u);
+    local_[k].take(u);
   }
 }
 
@@ -199,6 +207,13 @@ double TearSession::crack_area() const {
 
 double TearSession::stored_energy() { return response_->stored_energy(hand_.nodal_forces()); }
 
-void TearSession::displacement(VectorX& u) { response_->whole_displacement(hand_.nodal_forces(), u); }
+void TearSession::displacement(VectorX& u) { response_->whole_displacement(hand_.nodal_forces(), 1.0, u); }
+
+void TearSession::displacement(response::ForceBasis& basis, VectorX& u) {
+  const auto solve = [&](const VectorX& forces, double loads, VectorX& out) {
+    response_->whole_displacement(forces, loads, out);
+  };
+  basis.displacement(hand_.nodal_forces(), solve, u);
+}
 
 }  // namespace rhexis::session

@@ -17,6 +17,7 @@
 #include "fracture/path_start.h"
 #include "fracture/pieces.h"
 #include "mesh/torn_mesh.h"
+#include "response/force_basis.h"
 #include "response/response.h"
 #include "session/advance.h"
 #include "session/hand.h"
@@ -47,8 +48,9 @@ class TearSession {
   /// Takes hold of the surface point nearest to `at` (m, reference). Errors: as Hand::grasp.
   Expected<void> grasp(const Vec3& at, response::ContactMode mode = response::ContactMode::hold);
   void let_go();
-  /// One tick with the hand displaced by `hand` (m) from where it took hold.
-  TickReport tick(const Vec3& hand, const Observer& observer = {});
+  /// One tick with the hand displaced by `hand` (m) from where it took hold. `most_advances`, at least 1: what is left
+  /// then goes to the next tick; the same place of the hand again takes it up.
+  TickReport tick(const Vec3& hand, const Observer& observer = {}, int most_advances = kMostAdvancesPerTick);
   /// The crack runs on by `length` (m) along `direction` (unit, normal to its front), whatever the criterion says: what
   /// experiments need that prescribe the path. The hand stays where it is. `crack` must not be finished.
   TickReport impose(std::size_t crack, const Vec3& direction, double length, const Observer& observer = {});
@@ -72,6 +74,8 @@ class TearSession {
   [[nodiscard]] std::size_t memory_bytes() const { return response_->memory_bytes(); }
   /// Of every node, m; zero out of the solve.
   void displacement(VectorX& u);
+  /// The same by what the caller's basis knows of the present topology and hold, the same but for rounding.
+  void displacement(response::ForceBasis& basis, VectorX& u);
 
  private:
   TearSession(const mesh::TetMesh& mesh, TearSettings settings);
@@ -89,7 +93,7 @@ class TearSession {
     double seconds = 0.0;                                       ///< spent on planning it
     AdvanceRecord record;                                       ///< filled in as far as is known
   };
-  void tear(TickReport& report, const Observer& observer);
+  void tear(TickReport& report, const Observer& observer, int most_advances);
   [[nodiscard]] std::optional<Judged> judge(std::size_t crack) const;
   bool run_on(std::size_t crack, Judged judged, TickReport& report, const Observer& observer);
   bool start_crack(TickReport& report, const Observer& observer);
@@ -126,10 +130,18 @@ class TearSession {
   std::vector<double> reach_;                                ///< m, length of the last advance of each crack
   std::vector<std::size_t> running_;                         ///< numbers of the cracks that run
   std::vector<fracture::LocalObject> local_;                 ///< one for each of those
+  std::vector<response::ForceBasis> local_basis_;            ///< of their nodes
   std::vector<TetId> surface_tets_;                          ///< while no crack runs: where one may start
   std::vector<AdvanceRecord> advances_;
   fracture::Pieces pieces_;
   Hand hand_;
+  Vec3 hand_at_ = Vec3::Zero();  ///< m, as of the last tick
+  /// One after the other the cracks are judged at a place of the hand, round by round until none has torn in a round.
+  struct Round {
+    std::size_t next = 0;  ///< crack to be judged
+    bool tore = false;
+  };
+  Round round_;  ///< where a tick has left off
   int ticks_ = 0;
 };
 

@@ -173,9 +173,9 @@ inline Difference difference(const TornCase& body, ExactResponse& response, cons
   const VectorX u = oracle.displacement(held, force);
   const std::vector<NodeId> near = body.nodes_near(focus.centre, focus.radius);
   VectorX local;
-  response.displacement(near, force, local);
+  response.displacement(near, force, 1.0, local);
   VectorX whole;
-  response.whole_displacement(force, whole);
+  response.whole_displacement(force, 1.0, whole);
   const Eigen::MatrixXd compliance = oracle.compliance(held);
   const double energy = oracle.energy_at_rest() - energy_at_first + 0.5 * force.dot(compliance * force);
   const auto largest = [](const VectorX& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0.0; };

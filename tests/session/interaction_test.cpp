@@ -30,16 +30,19 @@ struct Case {
     EXPECT_TRUE(body.has_value()) << body.error().message();
     return std::move(*body);
   }
-  /// A step in which the hand is where a rigid device without delay has it.
+  /// A step in which the hand is where a rigid device without delay has it, as time stands still while the body tears.
   StepOutcome step() {
     haptics::HandState hand;
-    hand.tick = ++tick;
+    if (tore == 0) ++tick;
+    hand.tick = tick;
     hand.grasp = interaction.law().grasp;
     const bool holds = (interaction.law().flags & response::ForceSnapshot::is_held) != 0;
     hand.flags = holds ? haptics::HandState::holds : 0U;
     const Vec3 at = interaction.orders().hold != 0 ? interaction.orders().at(tick) : by;
     hand.hand = {at[0], at[1], at[2]};
-    return interaction.step(hand, true);
+    const StepOutcome out = interaction.step(hand, true);
+    tore = out.advances;
+    return out;
   }
   /// Of the whole script.
   std::vector<StepOutcome> run_script() {
@@ -54,6 +57,7 @@ struct Case {
   Heard heard;
   Interaction interaction;
   std::uint64_t tick = 0;
+  int tore = 0;  ///< advances of the last step
   Vec3 by = Vec3::Zero();
 };
 
@@ -72,6 +76,9 @@ TEST(Interaction, AScriptIsTheOneOfTheCommandTear) {
   ASSERT_GT(tear.advances().size(), 3U);
   for (std::size_t k = 0; k < tear.advances().size(); ++k) {
     EXPECT_EQ(live.interaction.tear().advances()[k].force_before, tear.advances()[k].force_before) << k;
+    // The live hand takes hold in a tick of its own; the first crack is there from the start.
+    const int tick = tear.advances()[k].tick;
+    EXPECT_EQ(live.interaction.body().advance_time[k], tick == 0 ? 0.0 : 1e-3 * (tick + 1)) << k;
     EXPECT_EQ(live.interaction.tear().advances()[k].length, tear.advances()[k].length) << k;
   }
 }

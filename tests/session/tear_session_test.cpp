@@ -209,6 +209,38 @@ INSTANTIATE_TEST_SUITE_P(All, EveryCriterion,
                            return name;
                          });
 
+TEST(TearSession, OneAdvanceATimeIsOneLongTickInParts) {
+  PlateCase plate;
+  plate.cracks = {{Vec3(0.091, 0.0, 0.0), Vec3(0.09, 0.04, 0.0), Vec3::UnitZ()},
+                  {Vec3(0.159, 0.0, 0.0), Vec3(0.16, 0.04, 0.0), Vec3::UnitZ()}};
+  plate.settings.strength = 0.1e6;
+  plate.settings.advance_threshold = 0.05e6;
+  const auto whole = plate.make();
+  const auto parts = plate.make();
+  ASSERT_TRUE(whole->grasp(plate.at).has_value());
+  ASSERT_TRUE(parts->grasp(plate.at).has_value());
+  int most = 0;
+  for (int k = 1; k <= 20; ++k) {
+    const Vec3 hand = plate.by * (k / 20.0);
+    const TickReport all = whole->tick(hand);
+    most = std::max(most, all.advances);
+    TickReport part;
+    for (int n = 0; n <= all.advances; ++n) {
+      part = parts->tick(hand, {}, 1);
+      EXPECT_EQ(part.advances, n < all.advances ? 1 : 0);
+    }
+    EXPECT_EQ(part.force, all.force) << k;
+  }
+  EXPECT_GT(most, 2);
+  ASSERT_EQ(whole->advances().size(), parts->advances().size());
+  bool right = false;
+  for (std::size_t k = 0; k < whole->advances().size(); ++k) {
+    EXPECT_EQ(whole->advances()[k].front_after, parts->advances()[k].front_after) << k;
+    right = right || (k > 1 && whole->advances()[k].front_after.front().x() > 0.125);
+  }
+  EXPECT_TRUE(right) << "one of the cracks alone has run";
+}
+
 TEST(TearSession, TheSameBitsWhateverTheThreads) {
   const PlateCase plate;
   std::vector<Trace> traces;
