@@ -19,6 +19,7 @@
 #include "bench/response_rivals.h"
 #include "response/contact.h"
 #include "response/exact_response.h"
+#include "response/force_basis.h"
 #include "response/publish.h"
 #include "tests/support/torn_body_oracle.h"
 
@@ -43,7 +44,7 @@ class ProcessorWatch {
 struct Way {
   std::function<Mat3(const mesh::MeshEdit&, const Focus&)> advance;
   /// Where there is one: what the nodes of the local object do under a force.
-  std::function<void(std::span<const NodeId>, const VectorX&, VectorX&)> displace;
+  std::function<void(std::span<const NodeId>, const VectorX&, double, VectorX&)> displace;
 };
 
 std::vector<NodeId> nodes_around(const mesh::TornMesh& body, const Focus& focus) {
@@ -80,10 +81,14 @@ void run(benchmark::State& state, const MakeWay& make, int most) {
       if (way.displace) {
         const std::vector<NodeId> local = nodes_around(body, pull.focus[i + 1]);
         VectorX u;
+        ForceBasis basis;
+        const auto solve = [&](const VectorX& forces, double loads, VectorX& out) {
+          way.displace(local, forces, loads, out);
+        };
         for (int tick = 0; tick < 8; ++tick) {
           const VectorX force = Vec3(std::sin(tick), std::cos(tick), 1.0);
           const ProcessorWatch one;
-          way.displace(local, force, u);
+          basis.displacement(force, solve, u);
           (tick < 3 ? first : again) += one.seconds() / static_cast<double>(advances);
         }
       }
@@ -131,8 +136,8 @@ Way follow_tree(const Pull& pull, mesh::TornMesh& body, bool is_known) {
     RHEXIS_CHECK(response->follow(edit, std::span(&focus, 1)).ok, "not stable");
     return Mat3(response->compliance());
   };
-  way.displace = [response](std::span<const NodeId> nodes, const VectorX& force, VectorX& out) {
-    response->displacement(nodes, force, 1.0, out);
+  way.displace = [response](std::span<const NodeId> nodes, const VectorX& force, double loads, VectorX& out) {
+    response->displacement(nodes, force, loads, out);
   };
   return way;
 }
