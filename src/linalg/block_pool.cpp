@@ -41,13 +41,13 @@ class BlockPool {
     return pool;
   }
 
-  /// The smallest idle block of that many bytes or up to half as many again, or a new one.
+  /// The smallest idle block of that many bytes or up to twice as many, or a new one.
   Block take(std::size_t bytes) {
     {
       const std::scoped_lock lock(mutex_);
       auto best = idle_.end();
       for (auto block = idle_.begin(); block != idle_.end(); ++block) {
-        if (block->bytes < bytes || 2 * block->bytes > 3 * bytes) continue;
+        if (block->bytes < bytes || block->bytes > 2 * bytes) continue;
         if (best == idle_.end() || block->bytes <= best->bytes) best = block;
       }
       if (best != idle_.end()) {

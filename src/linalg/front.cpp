@@ -22,7 +22,7 @@ class FrontMaker {
   std::shared_ptr<const Front> make() {
     find_nodes();
     find_dofs();
-    f_.panel = make_zeroed(static_cast<std::size_t>(f_.ld()) * static_cast<std::size_t>(f_.pivots));
+    f_.panel = make_zeroed(f_.panel_entries());
     f_.update = LowerTriangle(f_.boundary() + 1);
     diagonal_.assign(f_.dofs.size(), 0.0);
     add_elements();
@@ -226,8 +226,7 @@ std::size_t Front::memory_bytes() const {
   for (const Incoming& from : incoming) runs += from.runs.capacity();
   return sizeof(Front) + sizeof(NodeKey) * nodes.capacity() +
          sizeof(std::int32_t) * (dofs.capacity() + set_aside.capacity()) + sizeof(Run) * runs +
-         sizeof(double) * (static_cast<std::size_t>(ld()) * static_cast<std::size_t>(pivots) + assembled.capacity()) +
-         update.memory_bytes();
+         sizeof(double) * (panel_entries() + update.entries() + assembled.capacity());
 }
 
 bool lies_in_kept(const ElementSource& source, const FrontLayout& layout, std::span<const NodeKey> kept,

@@ -46,6 +46,9 @@ struct Front {
   [[nodiscard]] std::int32_t size() const { return static_cast<std::int32_t>(dofs.size()); }
   [[nodiscard]] std::int32_t boundary() const { return size() - pivots; }
   [[nodiscard]] std::int32_t ld() const { return size() + 1; }
+  [[nodiscard]] std::size_t panel_entries() const {
+    return static_cast<std::size_t>(ld()) * static_cast<std::size_t>(pivots);
+  }
   [[nodiscard]] std::span<const NodeKey> pivot_keys() const { return {nodes.data(), pivot_nodes}; }
   [[nodiscard]] std::span<const NodeKey> boundary_keys() const { return std::span(nodes).subspan(pivot_nodes); }
   /// Place of a free dof of a node among the pivots; -1: not a pivot here.

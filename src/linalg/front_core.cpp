@@ -129,6 +129,22 @@ void FrontTree::Core::factor(const ElementSource& source, std::vector<char> mark
   if (outcome == FrontOutcome::ok) condense(source);
 }
 
+void FrontTree::Core::lay_in_blocks() const {
+  constexpr std::size_t kDearest = 16;  // fronts: those about the largest separators, which a crack crosses in turn
+  std::vector<const Front*> largest;
+  for (const auto& front : fronts) {
+    if (front != nullptr) largest.push_back(front.get());
+  }
+  const std::size_t count = std::min(kDearest, largest.size());
+  std::partial_sort(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(count), largest.end(),
+                    [](const Front* a, const Front* b) { return a->memory_bytes() > b->memory_bytes(); });
+  std::vector<Block> blocks;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (const std::size_t entries : {largest[i]->panel_entries(), largest[i]->update.entries()})
+      blocks.push_back(make_zeroed(entries));
+  }
+}
+
 /// What the last front leaves on the kept dofs, and the elements and loads that are theirs alone.
 void FrontTree::Core::condense(const ElementSource& source) {
   const Front& last = *front(direction.last);

@@ -61,6 +61,9 @@ struct FrontTree::Core {
   /// Makes the fronts that are marked and all after them.
   void factor(const ElementSource& source, std::vector<char> marked);
   void condense(const ElementSource& source);
+  /// An update holds the fronts that it replaces until it is done. What the dearest needs beside them is taken from the
+  /// system now, with its pages, and left to the pool.
+  void lay_in_blocks() const;
 };
 
 }  // namespace rhexis::linalg

@@ -42,7 +42,7 @@ class LowerTriangle {
   /// column(j)[i] is the entry (i, j), i >= j.
   [[nodiscard]] double* column(int j) { return data_.get() + place(j); }
   [[nodiscard]] const double* column(int j) const { return data_.get() + place(j); }
-  [[nodiscard]] std::size_t memory_bytes() const { return entries_ * sizeof(double); }
+  [[nodiscard]] std::size_t entries() const { return entries_; }
 
  private:
   [[nodiscard]] std::size_t block_entries(int b) const {

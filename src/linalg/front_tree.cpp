@@ -80,6 +80,7 @@ std::shared_ptr<const FrontTree> FrontTree::make(const ElementSource& elements, 
   core->direction = direct(core->layout.tree(), middle_of(core->layout, next, {}, core->layout.tree().root()));
   core->fronts.resize(at(core->layout.tree().size()));
   core->factor(elements, std::vector<char>(core->fronts.size(), 1));
+  core->lay_in_blocks();
   return std::shared_ptr<const FrontTree>(new FrontTree(std::move(core)));
 }
 

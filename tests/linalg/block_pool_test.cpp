@@ -24,7 +24,7 @@ TEST(BlockPool, hands_a_block_to_one_that_is_not_much_smaller) {
   Block first = make_block(kCount);
   const double* const at = first.get();
   first.reset();
-  const Block small = make_block(kCount / 2);
+  const Block small = make_block(kCount / 3);
   EXPECT_NE(small.get(), at);
   const Block next = make_block(kCount - kCount / 4);
   EXPECT_EQ(next.get(), at);
