@@ -29,10 +29,9 @@ Expected<std::unique_ptr<LiveSession>> LiveSession::open(LiveSettings settings, 
   if (settings.tick) {
     if (Expected<void> good = haptics::check_settings(*settings.tick); !good) return fail(std::move(good.error()));
   }
-  Expected<std::string> text = scene::read_scene_text(settings.scene);
-  if (!text) return fail(std::move(text.error()));
-  Expected<std::unique_ptr<OpenBody>> body =
-      open_body({.file = settings.scene, .text = std::move(*text), .overrides = settings.overrides});
+  Expected<SceneChoice> choice = read_scene_choice(settings.scene, settings.overrides);
+  if (!choice) return fail(std::move(choice.error()));
+  Expected<std::unique_ptr<OpenBody>> body = open_body(std::move(*choice));
   if (!body) return fail(std::move(body.error()));
   return std::unique_ptr<LiveSession>(new LiveSession(std::move(settings), sink, std::move(*body)));
 }
@@ -219,12 +218,12 @@ void LiveSession::send(const wire::SharedMessage& message) {
 }
 
 Interaction::ReadScene LiveSession::scene_reader() {
-  return [this](const std::string& file) -> Expected<std::string> {
+  return [this](const std::string& file) -> Expected<SceneChoice> {
     if (std::find(settings_.scenes.begin(), settings_.scenes.end(), file) == settings_.scenes.end())
       return fail("not one of the scenes that can be opened here", {}, file);
-    Expected<std::string> text = scene::read_scene_text(file);
-    if (text && recorder_) recorder_->add_scene(next_step(), {.file = file, .text = *text, .overrides = {}});
-    return text;
+    Expected<SceneChoice> choice = read_scene_choice(file, {});
+    if (choice && recorder_) recorder_->add_scene(next_step(), *choice);
+    return choice;
   };
 }
 

@@ -290,6 +290,31 @@ TEST(Recorder, EndsWhenItsQueueIsFullAndSaysSo) {
   EXPECT_GT((*recorder)->close(), 0U);
 }
 
+TEST(Recorder, TakesASceneOfAnySizeThatCanBeReadAgain) {
+  const test::TestFolder folder("scenes");
+  const std::filesystem::path path = folder.path() / "scenes.h5";
+  Expected<std::unique_ptr<Recorder>> recorder = Recorder::create(path, RecordingHead());
+  ASSERT_TRUE(recorder.has_value()) << recorder.error().message();
+  auto mesh = std::make_shared<MeshBytes>(MeshBytes{.file = "a.msh", .bytes = std::string()});
+  mesh->bytes.assign(Recorder::kMostWaiting + 1, 'm');
+  (*recorder)->add_scene(1, {.file = "a.toml", .text = "", .overrides = {}, .mesh = mesh});
+  (*recorder)->add(TickRow());
+  EXPECT_EQ((*recorder)->trouble(), "");
+  auto too_large = std::make_shared<MeshBytes>(MeshBytes{.file = "a.msh", .bytes = std::string()});
+  too_large->bytes.assign(kMostMeshBytes + 1, 'm');
+  (*recorder)->add_scene(2, {.file = "a.toml", .text = "", .overrides = {}, .mesh = too_large});
+  EXPECT_THAT((*recorder)->trouble(), testing::HasSubstr("larger than 128 MiB"));
+  (*recorder)->close();
+
+  const Expected<RecordingFile> file = RecordingFile::open(path);
+  ASSERT_TRUE(file.has_value()) << file.error().message();
+  ASSERT_EQ(file->count().scenes, 1U);
+  EXPECT_EQ(file->count().ticks, 1U);
+  const Expected<SceneChoice> scene = file->scene(file->scenes()->front());
+  ASSERT_TRUE(scene.has_value()) << scene.error().message();
+  EXPECT_EQ(scene->mesh->bytes, mesh->bytes);
+}
+
 TEST(Recorder, DoesNotWriteOverAnything) {
   const test::TestFolder folder("there");
   folder.write("there.h5", "mine");
