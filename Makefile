@@ -70,7 +70,7 @@ asan: ## the tests under AddressSanitizer and UndefinedBehaviorSanitizer
 
 tsan: ## the tests under ThreadSanitizer
 	@$(call build_preset,tsan,all)
-	@TSAN_OPTIONS=suppressions=$(CURDIR)/tools/tsan.supp $(ctest) --test-dir build/tsan
+	@TSAN_OPTIONS='suppressions=$(CURDIR)/tools/tsan.supp history_size=7' $(ctest) --test-dir build/tsan
 
 tidy: ## clang-tidy with the naming rules over src
 	@$(call build_preset,release,rhexis)

@@ -82,7 +82,9 @@ fuzz::RecordingParts recording() {
     table.push_back({.at = 1, .kind = kind, .offset = parts.bytes.size(), .size = bytes.size()});
     parts.bytes.insert(parts.bytes.end(), bytes.begin(), bytes.end());
   };
-  add(parts.scenes, 0, session::bytes_of({.file = "a.toml", .text = "title = \"A\"", .overrides = {"a.b=1"}}));
+  const auto mesh = std::make_shared<session::MeshBytes>(session::MeshBytes{.file = "a.msh", .bytes = "mesh"});
+  add(parts.scenes, 0,
+      session::bytes_of({.file = "a.toml", .text = "title = \"A\"", .overrides = {"a.b=1"}, .mesh = mesh}));
   for (const wire::SharedMessage& frame : frames()) {
     const bool is_command = frame->kind > wire::Payload::Pong;
     add(is_command ? parts.commands : parts.frames, static_cast<std::uint64_t>(frame->kind), frame->bytes);

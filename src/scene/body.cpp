@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "mesh/generate.h"
-#include "mesh/io/mesh_file.h"
+#include "mesh/io/readers.h"
 #include "mesh/surface.h"
 #include "mesh/validate.h"
 #include "scene/sets.h"
@@ -16,19 +16,22 @@ tl::unexpected<Error> placed(const Error& error, const Place& place) {
   return fail(error.at(place.file ? *place.file : std::string{}, place.line));
 }
 
-Expected<mesh::TetMesh> read(const MeshFromFile& source, const Place& place, std::vector<std::string>& notes) {
-  std::error_code code;
-  if (!std::filesystem::exists(source.path, code))
-    return place.fail("there is no mesh file " + in_quotes(source.path.string()), "a path relative to the scene");
-  Expected<mesh::MeshFile> file = mesh::read_mesh_file(source.path, {.unit = source.unit});
-  if (!file) return placed(file.error(), place);
+Expected<mesh::TetMesh> read(const Scene& scene, const MeshFromFile& source, std::vector<std::string>& notes) {
+  std::shared_ptr<const std::string> bytes = source.bytes;
+  if (bytes == nullptr) {
+    Expected<std::shared_ptr<const std::string>> found = read_mesh_bytes(scene);
+    if (!found) return fail(std::move(found.error()));
+    bytes = std::move(*found);
+  }
+  Expected<mesh::MeshFile> file = mesh::io::parse_mesh(*bytes, source.path.string(), {.unit = source.unit});
+  if (!file) return placed(file.error(), scene.mesh.place);
   notes.insert(notes.end(), file->notes.begin(), file->notes.end());
   return std::move(file->mesh);
 }
 
 Expected<mesh::TetMesh> make_mesh(const Scene& scene, std::vector<std::string>& notes) {
   const Place& place = scene.mesh.place;
-  if (const auto* file = std::get_if<MeshFromFile>(&scene.mesh.source)) return read(*file, place, notes);
+  if (const auto* file = std::get_if<MeshFromFile>(&scene.mesh.source)) return read(scene, *file, notes);
   const auto generate = [&]() -> Expected<mesh::TetMesh> {
     if (const auto* tube = std::get_if<GeneratedTube>(&scene.mesh.source))
       return mesh::make_tube(tube->shape, tube->nodes);
@@ -73,6 +76,18 @@ void measure(Body& body) {
 }
 
 }  // namespace
+
+Expected<std::shared_ptr<const std::string>> read_mesh_bytes(const Scene& scene) {
+  const auto* source = std::get_if<MeshFromFile>(&scene.mesh.source);
+  if (source == nullptr) return nullptr;
+  std::error_code code;
+  if (!std::filesystem::exists(source->path, code))
+    return scene.mesh.place.fail("there is no mesh file " + in_quotes(source->path.string()),
+                                 "a path relative to the scene");
+  Expected<std::string> bytes = mesh::read_mesh_bytes(source->path);
+  if (!bytes) return placed(bytes.error(), scene.mesh.place);
+  return std::make_shared<const std::string>(std::move(*bytes));
+}
 
 Expected<Body> make_body(const Scene& scene, std::vector<std::string>& notes) {
   Expected<mesh::TetMesh> mesh = make_mesh(scene, notes);

@@ -2,6 +2,7 @@
 
 /// The mesh of a scene, read or generated, sound, with the sets of the scene.
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct Body {
   mesh::BoundingBox box;                ///< of the nodes that are used, m
   std::vector<mesh::TetFace> boundary;  ///< faces that one tet has, ordered
 };
+
+/// Of the mesh file that the scene names; null: it generates its mesh. Errors: the file's, placed.
+[[nodiscard]] Expected<std::shared_ptr<const std::string>> read_mesh_bytes(const Scene& scene);
 
 /// Notes say what was repaired on reading and which set of the scene stands in for one of the mesh.
 [[nodiscard]] Expected<Body> make_body(const Scene& scene, std::vector<std::string>& notes);

@@ -4,6 +4,7 @@
 /// of it has met a mesh yet: that is scene/problem.h.
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,8 +23,9 @@
 namespace rhexis::scene {
 
 struct MeshFromFile {
-  std::filesystem::path path;  ///< found from here, not from the scene
-  double unit = 1.0;           ///< metres per unit of the file
+  std::filesystem::path path;                          ///< found from here, not from the scene
+  double unit = 1.0;                                   ///< metres per unit of the file
+  std::shared_ptr<const std::string> bytes = nullptr;  ///< the file's, where they are at hand; null: it is read
 };
 struct GeneratedBox {
   bool plate = false;  ///< thin in z; else a bar or cube

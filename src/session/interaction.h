@@ -40,8 +40,8 @@ struct StepOutcome {
 
 class Interaction {
  public:
-  /// The text of a scene that a client names. Errors: not one that may be opened, cannot be read.
-  using ReadScene = std::function<Expected<std::string>(const std::string& file)>;
+  /// A scene that a client names, read. Errors: not one that may be opened, cannot be read.
+  using ReadScene = std::function<Expected<SceneChoice>(const std::string& file)>;
 
   /// `listener` has to outlive this; it is told of nothing before the first step or command.
   Interaction(std::unique_ptr<OpenBody> body, ReadScene read_scene, InteractionListener& listener);

@@ -42,10 +42,9 @@ void Interaction::carry_out(const wire::PayloadUnion& command) {
       break;
     case wire::Payload::SetValue: set_value(*command.AsSetValue()); break;
     case wire::Payload::OpenScene: {
-      const std::string& file = command.AsOpenScene()->file;
-      Expected<std::string> text = read_scene_(file);
-      if (!text) return say(text.error());
-      open({.file = file, .text = std::move(*text), .overrides = {}});
+      Expected<SceneChoice> choice = read_scene_(command.AsOpenScene()->file);
+      if (!choice) return say(choice.error());
+      open(std::move(*choice));
       break;
     }
     default: break;

@@ -26,6 +26,7 @@ wire::SharedMessage make_hello(const LiveSettings& settings) {
 Expected<std::unique_ptr<LiveSession>> LiveSession::open(LiveSettings settings, FrameSink& sink) {
   if (std::find(settings.scenes.begin(), settings.scenes.end(), settings.scene) == settings.scenes.end())
     settings.scenes.insert(settings.scenes.begin(), settings.scene);
+<<<<<<< HEAD
   Holder holder{.script = std::make_shared<ScriptedHand>(), .device = nullptr, .tick = {}};
   Expected<std::unique_ptr<haptics::Device>> device =
       settings.device ? settings.device(holder.script) : std::make_unique<haptics::PointerDevice>();
@@ -39,6 +40,14 @@ Expected<std::unique_ptr<LiveSession>> LiveSession::open(LiveSettings settings, 
   if (!text) return fail(std::move(text.error()));
   Expected<std::unique_ptr<OpenBody>> body =
       open_body({.file = settings.scene, .text = std::move(*text), .overrides = settings.overrides});
+=======
+  if (settings.tick) {
+    if (Expected<void> good = haptics::check_settings(*settings.tick); !good) return fail(std::move(good.error()));
+  }
+  Expected<SceneChoice> choice = read_scene_choice(settings.scene, settings.overrides);
+  if (!choice) return fail(std::move(choice.error()));
+  Expected<std::unique_ptr<OpenBody>> body = open_body(std::move(*choice));
+>>>>>>> help-fuzz
   if (!body) return fail(std::move(body.error()));
   if (const haptics::DeviceTraits& traits = holder.device->traits();
       traits.follows_script && (*body)->problem.pulls.empty())
@@ -247,12 +256,12 @@ void LiveSession::send(const wire::SharedMessage& message) {
 }
 
 Interaction::ReadScene LiveSession::scene_reader() {
-  return [this](const std::string& file) -> Expected<std::string> {
+  return [this](const std::string& file) -> Expected<SceneChoice> {
     if (std::find(settings_.scenes.begin(), settings_.scenes.end(), file) == settings_.scenes.end())
       return fail("not one of the scenes that can be opened here", {}, file);
-    Expected<std::string> text = scene::read_scene_text(file);
-    if (text && recorder_) recorder_->add_scene(next_step(), {.file = file, .text = *text, .overrides = {}});
-    return text;
+    Expected<SceneChoice> choice = read_scene_choice(file, {});
+    if (choice && recorder_) recorder_->add_scene(next_step(), *choice);
+    return choice;
   };
 }
 

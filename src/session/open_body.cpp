@@ -4,6 +4,7 @@
 
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "scene/body.h"
 
 namespace rhexis::session {
 namespace {
@@ -50,9 +51,28 @@ Expected<std::unique_ptr<OpenBody>> start_body(SceneChoice scene, scene::TearPro
 
 }  // namespace
 
-Expected<std::unique_ptr<OpenBody>> open_body(SceneChoice choice) {
+Expected<SceneChoice> read_scene_choice(std::string file, std::vector<std::string> overrides) {
+  Expected<std::string> text = scene::read_scene_text(file);
+  if (!text) return fail(std::move(text.error()));
+  SceneChoice choice{.file = std::move(file), .text = std::move(*text), .overrides = std::move(overrides)};
   const Expected<scene::Scene> scene = scene::parse_scene(choice.text, choice.file, choice.overrides);
-  if (!scene) return fail(scene.error());
+  const auto* source = scene ? std::get_if<scene::MeshFromFile>(&scene->mesh.source) : nullptr;
+  if (source == nullptr) return choice;
+  Expected<std::shared_ptr<const std::string>> bytes = scene::read_mesh_bytes(*scene);
+  if (!bytes) return fail(std::move(bytes.error()));
+  choice.mesh = std::make_shared<MeshBytes>(MeshBytes{.file = source->path, .bytes = **bytes});
+  return choice;
+}
+
+Expected<std::unique_ptr<OpenBody>> open_body(SceneChoice choice) {
+  Expected<scene::Scene> scene = scene::parse_scene(choice.text, choice.file, choice.overrides);
+  if (!scene) return fail(std::move(scene.error()));
+  if (auto* source = std::get_if<scene::MeshFromFile>(&scene->mesh.source)) {
+    if (choice.mesh == nullptr || choice.mesh->file != source->path)
+      return scene->mesh.place.fail(fmt::format("mesh file '{}' has not been read", source->path.string()),
+                                    "the file that was read with the scene");
+    source->bytes = {choice.mesh, &choice.mesh->bytes};
+  }
   Expected<scene::TearProblem> problem = scene::build_tear_problem(*scene, scene::Puller::hand);
   if (!problem) return fail(std::move(problem.error()));
   set_thread_count(scene->solver.threads);

@@ -3,6 +3,7 @@
 /// A scene that has been opened to be held: its text, what was made of it, and its surface. What a reset makes anew.
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,11 +14,18 @@
 
 namespace rhexis::session {
 
-/// What decides a body to the bit, beside the mesh file that it may name.
+/// A mesh file as it was when its scene was read.
+struct MeshBytes {
+  std::filesystem::path file;
+  std::string bytes;
+};
+
+/// What decides a body to the bit.
 struct SceneChoice {
-  std::string file;                    ///< as it is named to clients
-  std::string text;                    ///< TOML
-  std::vector<std::string> overrides;  ///< "key=value", in the order of --set
+  std::string file;                                 ///< as it is named to clients
+  std::string text;                                 ///< TOML
+  std::vector<std::string> overrides;               ///< "key=value", in the order of --set
+  std::shared_ptr<const MeshBytes> mesh = nullptr;  ///< that the scene reads; null: it generates its mesh
 };
 
 struct OpenBody {
@@ -34,7 +42,11 @@ struct OpenBody {
   [[nodiscard]] TearSession& tear() const { return *start.tear; }
 };
 
-/// Errors are those of the scene, its mesh and its first cracks.
+/// Reads a scene's file, and the mesh file that it names. Errors: of the two files. That the scene is no good,
+/// open_body says.
+[[nodiscard]] Expected<SceneChoice> read_scene_choice(std::string file, std::vector<std::string> overrides);
+/// Reads no file. Errors are those of the scene, its mesh and its first cracks; a scene that names another mesh file
+/// than `scene` holds.
 [[nodiscard]] Expected<std::unique_ptr<OpenBody>> open_body(SceneChoice scene);
 /// The same body from the start again, without reading anything.
 [[nodiscard]] Expected<std::unique_ptr<OpenBody>> reopen(const OpenBody& body);

@@ -19,19 +19,23 @@ struct Recorder::Core {
   std::mutex mutex;  ///< guards all below but the thread itself
   std::condition_variable something;
   RecordingBatch waiting;
-  std::uint64_t bytes_added = 0;  ///< where the next piece lies in the file's `bytes`
+  std::size_t scenes_waiting = 0;  ///< bytes of them in `waiting`
+  std::uint64_t bytes_added = 0;   ///< where the next piece lies in the file's `bytes`
   bool ends = false;
   bool closes = false;
   std::string trouble;
   std::thread thread;
 
+  enum class Rank { may_be_left_out, counts, always_fits };
+
   /// Calls add(batch) unless the recording has ended, or `size` more bytes would not fit.
   template <class Add>
-  void queue(std::size_t size, bool may_be_left_out, const Add& add) {
+  void queue(std::size_t size, Rank rank, const Add& add) {
     const std::lock_guard lock(mutex);
     if (ends) return;
-    const std::size_t filled = waiting.size() + size;
-    if (may_be_left_out && filled > kMostWaiting / 2) return;
+    if (rank == Rank::always_fits) scenes_waiting += size;
+    const std::size_t filled = waiting.size() + size - scenes_waiting;
+    if (rank == Rank::may_be_left_out && filled > kMostWaiting / 2) return;
     if (filled > kMostWaiting) {
       ends = true;
       trouble = "the disk is too slow for the recording: it has ended";
@@ -41,8 +45,8 @@ struct Recorder::Core {
   }
 
   void queue_piece(std::vector<PieceRow> RecordingBatch::*table, PieceRow row, std::span<const std::uint8_t> bytes,
-                   bool may_be_left_out) {
-    queue(bytes.size() + sizeof(PieceRow), may_be_left_out, [&](RecordingBatch& batch) {
+                   Rank rank) {
+    queue(bytes.size() + sizeof(PieceRow), rank, [&](RecordingBatch& batch) {
       row.offset = bytes_added;
       row.size = bytes.size();
       bytes_added += bytes.size();
@@ -59,6 +63,7 @@ struct Recorder::Core {
       something.wait_for(lock, std::chrono::milliseconds(kFlushMilliseconds), [&] { return closes; });
       last = closes;
       std::swap(batch, waiting);
+      scenes_waiting = 0;
       lock.unlock();
       Expected<void> written;
       if (batch.size() > 0) written = writer.append(batch);
@@ -86,11 +91,11 @@ Expected<std::unique_ptr<Recorder>> Recorder::create(const std::filesystem::path
 }
 
 void Recorder::add(const TickRow& tick) {
-  core_->queue(sizeof(tick), false, [&](RecordingBatch& batch) { batch.ticks.push_back(tick); });
+  core_->queue(sizeof(tick), Core::Rank::counts, [&](RecordingBatch& batch) { batch.ticks.push_back(tick); });
 }
 
 void Recorder::add(const StepRow& step) {
-  core_->queue(sizeof(step), false, [&](RecordingBatch& batch) { batch.steps.push_back(step); });
+  core_->queue(sizeof(step), Core::Rank::counts, [&](RecordingBatch& batch) { batch.steps.push_back(step); });
 }
 
 void Recorder::add_command(std::uint64_t before_step, const wire::PayloadUnion& command) {
@@ -99,18 +104,22 @@ void Recorder::add_command(std::uint64_t before_step, const wire::PayloadUnion& 
   const wire::SharedMessage message = wire::encode_frame(frame);
   core_->queue_piece(&RecordingBatch::commands,
                      {.at = before_step, .kind = static_cast<std::uint64_t>(command.type), .offset = 0, .size = 0},
-                     message->bytes, false);
+                     message->bytes, Core::Rank::counts);
 }
 
 void Recorder::add_scene(std::uint64_t before_step, const SceneChoice& scene) {
+  if (scene.mesh != nullptr && scene.mesh->bytes.size() > kMostMeshBytes)
+    return end(fmt::format("the scene's mesh file is larger than {} MiB, which no recording takes: it has ended",
+                           kMostMeshBytes >> 20));
   const std::vector<std::uint8_t> bytes = bytes_of(scene);
-  core_->queue_piece(&RecordingBatch::scenes, {.at = before_step, .kind = 0, .offset = 0, .size = 0}, bytes, false);
+  core_->queue_piece(&RecordingBatch::scenes, {.at = before_step, .kind = 0, .offset = 0, .size = 0}, bytes,
+                     Core::Rank::always_fits);
 }
 
 void Recorder::add_frame(std::uint64_t tick, const wire::SharedMessage& frame) {
-  core_->queue_piece(&RecordingBatch::frames,
-                     {.at = tick, .kind = static_cast<std::uint64_t>(frame->kind), .offset = 0, .size = 0},
-                     frame->bytes, wire::may_be_dropped(frame->kind));
+  core_->queue_piece(
+      &RecordingBatch::frames, {.at = tick, .kind = static_cast<std::uint64_t>(frame->kind), .offset = 0, .size = 0},
+      frame->bytes, wire::may_be_dropped(frame->kind) ? Core::Rank::may_be_left_out : Core::Rank::counts);
 }
 
 std::string Recorder::trouble() const {

@@ -19,8 +19,8 @@ namespace rhexis::session {
 
 class Recorder {
  public:
-  /// What may wait for the disk. A State frame is left out when half of it is full; when it is all full, the recording
-  /// ends.
+  /// What may wait for the disk, beside scenes, which take what they take. A State frame is left out when half of it is
+  /// full; when it is all full, the recording ends.
   static constexpr std::size_t kMostWaiting = std::size_t{64} << 20;  // bytes
   static constexpr int kFlushMilliseconds = 50;
 
@@ -32,7 +32,7 @@ class Recorder {
   void add(const TickRow& tick);
   void add(const StepRow& step);
   void add_command(std::uint64_t before_step, const wire::PayloadUnion& command);
-  /// A scene that was opened, with what was set; also the first one.
+  /// A scene that was opened, with what was set; also the first one. With a mesh too large for a recording, it ends.
   void add_scene(std::uint64_t before_step, const SceneChoice& scene);
   void add_frame(std::uint64_t tick, const wire::SharedMessage& frame);
   /// Empty while all is well; else why the recording has ended before it was closed. From then on nothing is added; the

@@ -17,9 +17,6 @@
 
 namespace rhexis::session {
 
-/// No frame, command or scene is larger.
-inline constexpr std::uint64_t kMostPieceBytes = std::uint64_t{1} << 28;
-
 class RecordingFile {
  public:
   static Expected<RecordingFile> open(const std::filesystem::path& path);

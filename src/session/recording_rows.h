@@ -26,6 +26,11 @@ struct StepRow {
   std::array<double, 3> force{};  ///< N, on the hand, of the body itself
 };
 
+/// No frame, command or scene is larger.
+inline constexpr std::uint64_t kMostPieceBytes = std::uint64_t{1} << 28;
+/// Nor is a scene's mesh file, beside which its text has room.
+inline constexpr std::uint64_t kMostMeshBytes = kMostPieceBytes / 2;
+
 /// A piece of the recording's `bytes`.
 struct PieceRow {
   std::uint64_t at = 0;    ///< commands, scenes: the step before which it was taken up; frames: tick of the haptic loop

@@ -1,5 +1,6 @@
 #include "session/recording_scene.h"
 
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -45,17 +46,27 @@ class SceneReader final : public nlohmann::json_sax<Json> {
     return false;
   }
 
-  [[nodiscard]] bool is_whole() const { return seen_ == std::set<std::string>{"file", "text", "overrides"}; }
-  [[nodiscard]] SceneChoice& scene() { return scene_; }
+  /// Empty: something is missing.
+  [[nodiscard]] std::optional<SceneChoice> scene() {
+    const std::size_t of_mesh = seen_.erase("mesh_file") + seen_.erase("mesh");
+    if (seen_ != std::set<std::string>{"file", "text", "overrides"} || of_mesh == 1) return {};
+    if (of_mesh == 2)
+      scene_.mesh = std::make_shared<MeshBytes>(MeshBytes{.file = mesh_file_, .bytes = std::move(mesh_)});
+    return std::move(scene_);
+  }
 
  private:
   std::string* place() {
     if (in_list_) return &scene_.overrides.emplace_back();
     if (key_ == "file") return &scene_.file;
+    if (key_ == "mesh_file") return &mesh_file_;
+    if (key_ == "mesh") return &mesh_;
     return key_ == "text" ? &scene_.text : nullptr;
   }
 
   SceneChoice scene_;
+  std::string mesh_file_;
+  std::string mesh_;
   std::set<std::string> seen_;
   std::string key_;
   bool begun_ = false;
@@ -71,15 +82,20 @@ std::vector<std::uint8_t> bytes_of(const SceneChoice& scene) {
   };
   Json overrides = Json::array();
   for (const std::string& override : scene.overrides) overrides.push_back(binary(override));
-  return Json::to_cbor(
-      {{"file", binary(scene.file)}, {"text", binary(scene.text)}, {"overrides", std::move(overrides)}});
+  Json json{{"file", binary(scene.file)}, {"text", binary(scene.text)}, {"overrides", std::move(overrides)}};
+  if (scene.mesh != nullptr) {
+    json["mesh_file"] = binary(scene.mesh->file.string());
+    json["mesh"] = binary(scene.mesh->bytes);
+  }
+  return Json::to_cbor(json);
 }
 
 Expected<SceneChoice> parse_scene_choice(std::span<const std::uint8_t> bytes) {
   SceneReader reader;
   const bool read = Json::sax_parse(bytes.begin(), bytes.end(), &reader, Json::input_format_t::cbor, /*strict=*/true);
-  if (!read || !reader.is_whole()) return fail("a scene in it cannot be read");
-  return std::move(reader.scene());
+  std::optional<SceneChoice> scene = read ? reader.scene() : std::nullopt;
+  if (!scene) return fail("a scene in it cannot be read");
+  return std::move(*scene);
 }
 
 }  // namespace rhexis::session

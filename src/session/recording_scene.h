@@ -1,6 +1,6 @@
 #pragma once
 
-/// A scene as a recording keeps it: name, text and what was set, as bytes.
+/// A scene as a recording keeps it: name, text, what was set and its mesh file, as bytes.
 
 #include <cstdint>
 #include <span>

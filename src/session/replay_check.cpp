@@ -222,14 +222,14 @@ class Check {
       report_.difference = fmt::format("{}: {}", where, comparison.text());
   }
 
-  Expected<std::string> recorded_scene(const std::string& file) {
+  Expected<SceneChoice> recorded_scene(const std::string& file) {
     const auto not_read = [&] { return fail("the scene was not read in the recording", {}, file); };
     if (next_scene_ == scenes_.size() || scenes_[next_scene_].at != report_.steps + 1) return not_read();
     Expected<SceneChoice> scene = file_.scene(scenes_[next_scene_]);
     if (!scene) scene_is_wrong_ = scene.error();
     if (!scene || scene->file != file) return not_read();
     ++next_scene_;
-    return std::move(scene->text);
+    return scene;
   }
 
   const RecordingFile& file_;

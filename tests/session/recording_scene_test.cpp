@@ -21,6 +21,21 @@ TEST(RecordedScene, ComesBackByteByByte) {
   EXPECT_EQ(scene->overrides, kScene.overrides);
 }
 
+TEST(RecordedScene, KeepsItsMeshFile) {
+  SceneChoice with_mesh = kScene;
+  with_mesh.mesh = std::make_shared<MeshBytes>(MeshBytes{.file = "folder/a.msh", .bytes = std::string("\0mesh", 5)});
+  const Expected<SceneChoice> scene = parse_scene_choice(bytes_of(with_mesh));
+  ASSERT_TRUE(scene.has_value());
+  ASSERT_NE(scene->mesh, nullptr);
+  EXPECT_EQ(scene->mesh->file, with_mesh.mesh->file);
+  EXPECT_EQ(scene->mesh->bytes, with_mesh.mesh->bytes);
+  for (const char* half : {"mesh", "mesh_file"}) {
+    Json json = Json::from_cbor(bytes_of(with_mesh));
+    json.erase(half);
+    EXPECT_FALSE(parse_scene_choice(Json::to_cbor(json)).has_value()) << half;
+  }
+}
+
 TEST(RecordedScene, CutOffOrOfAnotherFormIsRefused) {
   const std::vector<std::uint8_t> whole = bytes_of(kScene);
   for (std::size_t size = 0; size < whole.size(); ++size)

@@ -46,26 +46,6 @@ Ending ending_of(const fs::path& path) {
 /// Larger files are refused before they are loaded.
 constexpr std::uintmax_t kLargestFile = std::uintmax_t{8} << 30;
 
-Expected<std::string> load_file(const fs::path& path) {
-  const std::string name = path.string();
-  std::error_code code;
-  const fs::file_status status = fs::status(path, code);
-  if (status.type() == fs::file_type::not_found) return fail("there is no such file", "", name);
-  if (code) return fail("cannot read: " + code.message(), "", name);
-  // A pipe or a device may never end.
-  if (status.type() != fs::file_type::regular) return fail("it is not a file", "", name);
-  const std::uintmax_t size = fs::file_size(path, code);
-  if (code) return fail("cannot read: " + code.message(), "", name);
-  if (size > kLargestFile)
-    return fail(fmt::format("it is larger than {} GiB", kLargestFile >> 30), "cut the mesh", name);
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes(size, '\0');
-  file.read(bytes.data(), static_cast<std::streamsize>(size));
-  if (!file) return fail(fmt::format("cannot read: {}", errno != 0 ? std::strerror(errno) : "it ends early"), "", name);
-  return bytes;
-}
-
 Expected<void> check_fields(const fs::path& path, const TetMesh& mesh, const std::vector<Field>& fields) {
   std::set<std::pair<Centering, std::string>> names;
   for (const Field& field : fields) {
@@ -91,6 +71,26 @@ Expected<void> check_fields(const fs::path& path, const TetMesh& mesh, const std
 
 }  // namespace
 
+Expected<std::string> read_mesh_bytes(const fs::path& path) {
+  const std::string name = path.string();
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  if (status.type() == fs::file_type::not_found) return fail("there is no such file", "", name);
+  if (code) return fail("cannot read: " + code.message(), "", name);
+  // A pipe or a device may never end.
+  if (status.type() != fs::file_type::regular) return fail("it is not a file", "", name);
+  const std::uintmax_t size = fs::file_size(path, code);
+  if (code) return fail("cannot read: " + code.message(), "", name);
+  if (size > kLargestFile)
+    return fail(fmt::format("it is larger than {} GiB", kLargestFile >> 30), "cut the mesh", name);
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes(size, '\0');
+  file.read(bytes.data(), static_cast<std::streamsize>(size));
+  if (!file) return fail(fmt::format("cannot read: {}", errno != 0 ? std::strerror(errno) : "it ends early"), "", name);
+  return bytes;
+}
+
 Expected<MeshFile> io::parse_mesh(std::string_view bytes, const std::string& file, const ReadOptions& options) {
   const Ending ending = ending_of(file);
   std::string unpacked;
@@ -109,7 +109,7 @@ Expected<MeshFile> io::parse_mesh(std::string_view bytes, const std::string& fil
 }
 
 Expected<MeshFile> read_mesh_file(const fs::path& path, const ReadOptions& options) {
-  const Expected<std::string> bytes = load_file(path);
+  const Expected<std::string> bytes = read_mesh_bytes(path);
   if (!bytes) return fail(bytes.error());
   return io::parse_mesh(*bytes, path.string(), options);
 }

@@ -29,6 +29,8 @@ struct ReadOptions {
 /// are not looked for here: see mesh/validate.h. Nothing a file holds can crash the program or exhaust memory: counts
 /// are checked against the file's size before anything is allocated.
 Expected<MeshFile> read_mesh_file(const std::filesystem::path& path, const ReadOptions& options = {});
+/// The bytes of such a file as they are: what io::parse_mesh takes. Errors: none, not a file, larger than 8 GiB.
+Expected<std::string> read_mesh_bytes(const std::filesystem::path& path);
 
 /// Writes by the ending of `path`, whole or not at all. MSH keeps sets as physical groups and drops fields.
 /// Errors: an ending that cannot be written, a folder that cannot be written to, a field of the wrong size.
