@@ -26,7 +26,6 @@ wire::SharedMessage make_hello(const LiveSettings& settings) {
 Expected<std::unique_ptr<LiveSession>> LiveSession::open(LiveSettings settings, FrameSink& sink) {
   if (std::find(settings.scenes.begin(), settings.scenes.end(), settings.scene) == settings.scenes.end())
     settings.scenes.insert(settings.scenes.begin(), settings.scene);
-<<<<<<< HEAD
   Holder holder{.script = std::make_shared<ScriptedHand>(), .device = nullptr, .tick = {}};
   Expected<std::unique_ptr<haptics::Device>> device =
       settings.device ? settings.device(holder.script) : std::make_unique<haptics::PointerDevice>();
@@ -36,18 +35,9 @@ Expected<std::unique_ptr<LiveSession>> LiveSession::open(LiveSettings settings, 
   holder.tick.motion_scale = settings.motion_scale;
   holder.tick.force_scale = settings.force_scale;
   if (Expected<void> good = haptics::check_settings(holder.tick); !good) return fail(std::move(good.error()));
-  Expected<std::string> text = scene::read_scene_text(settings.scene);
-  if (!text) return fail(std::move(text.error()));
-  Expected<std::unique_ptr<OpenBody>> body =
-      open_body({.file = settings.scene, .text = std::move(*text), .overrides = settings.overrides});
-=======
-  if (settings.tick) {
-    if (Expected<void> good = haptics::check_settings(*settings.tick); !good) return fail(std::move(good.error()));
-  }
   Expected<SceneChoice> choice = read_scene_choice(settings.scene, settings.overrides);
   if (!choice) return fail(std::move(choice.error()));
   Expected<std::unique_ptr<OpenBody>> body = open_body(std::move(*choice));
->>>>>>> help-fuzz
   if (!body) return fail(std::move(body.error()));
   if (const haptics::DeviceTraits& traits = holder.device->traits();
       traits.follows_script && (*body)->problem.pulls.empty())
