@@ -26,10 +26,14 @@ build: ## the program: build/release/bin/rhexis
 viewer/node_modules/.package-lock.json: viewer/package-lock.json viewer/package.json
 	@cd viewer && npm ci --loglevel=error && touch node_modules/.package-lock.json
 
+page := build/release/share/rhexis/page/index.html
+page_sources := $(shell find viewer schema -name node_modules -prune -o -type f -print)
+$(page): viewer/node_modules/.package-lock.json $(page_sources)
+	@cd viewer && npm run --silent build && touch ../$(page) && echo "built build/release/share/rhexis/page"
+
 viewer: ## the page of play and replay: build/release/share/rhexis/page
 	@tools/install viewer
-	@$(MAKE) --no-print-directory viewer/node_modules/.package-lock.json
-	@cd viewer && npm run --silent build && echo "built build/release/share/rhexis/page"
+	@$(MAKE) --no-print-directory --silent $(page)
 
 play: build viewer ## hold the plate in a browser, and tear it
 	@build/release/bin/rhexis play scenes/plate-tear.toml

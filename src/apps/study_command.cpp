@@ -143,7 +143,9 @@ void add_live(CLI::App& study, const Common& common, int& code) {
   command->add_option("--seconds", options->seconds, "to run; 600 unless given")
       ->type_name("SECONDS")
       ->check(CLI::Range(1.0, 86400.0));
-  command->add_option("--nodes", options->nodes, "of the plate; 20000 unless given")->type_name("COUNT");
+  command->add_option("--nodes", options->nodes, "of the plate; 20000 unless given")
+      ->type_name("COUNT")
+      ->check(CLI::Range(100, 1'000'000));
   command->add_option("--clients", options->clients, "that watch; 3 unless given")
       ->type_name("COUNT")
       ->check(CLI::Range(1, 16));

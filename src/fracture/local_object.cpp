@@ -57,24 +57,28 @@ struct LocalObject::Core {
   void add_loads(const LocalLoads& loads);
   [[nodiscard]] bool factor_interior();
   void find_stresses();
-  [[nodiscard]] std::int32_t place(NodeId node) const {
-    return static_cast<std::int32_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
-  }
 };
 
 void LocalObject::Core::number(const mesh::TornMesh& body, std::span<const std::uint8_t> supported,
                                std::span<const NodeId> hand) {
+  // Per node of the body: first the tets of the local object around it, then its local number.
+  std::vector<std::int32_t> of_body(body.mesh().node_count(), 0);
   for (const TetId tet : tets)
-    for (const NodeId node : body.mesh().tet(tet)) nodes.push_back(node);
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-
-  std::vector<std::int32_t> inside(nodes.size(), 0);  // tets of the local object around each node
+    for (const NodeId node : body.mesh().tet(tet)) ++of_body[node.index()];
+  std::vector<std::int32_t> inside;  // of the local nodes
+  for (std::size_t i = 0; i < of_body.size(); ++i) {
+    if (of_body[i] == 0) continue;
+    inside.push_back(of_body[i]);
+    of_body[i] = static_cast<std::int32_t>(nodes.size());
+    nodes.emplace_back(i);
+  }
+  local.reserve(tets.size());
+  shape.reserve(tets.size());
+  stresses.reserve(tets.size());
   for (const TetId tet : tets) {
     auto& of_tet = local.emplace_back();
     for (std::size_t k = 0; k < 4; ++k) {
-      of_tet[k] = place(body.mesh().tet(tet)[k]);
-      ++inside[static_cast<std::size_t>(of_tet[k])];
+      of_tet[k] = of_body[body.mesh().tet(tet)[k].index()];
     }
     const std::array<Vec3, 4> x = mesh::corners(body.mesh(), tet);
     shape.push_back(element::make_linear_tet(x));

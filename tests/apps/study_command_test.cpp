@@ -56,6 +56,7 @@ TEST(StudyCommand, MeasuresALiveSession) {
   EXPECT_THAT(ran.out, HasSubstr("ticks within 1 ms of their time"));
   EXPECT_TRUE(std::filesystem::exists(folder / "live-ticks.svg"));
   EXPECT_EQ(test::run_rhexis("study live --seconds 1 --nodes 200 --device pointer" + out).code, 2);
+  EXPECT_EQ(test::run_rhexis("study live --seconds 1 --nodes 3" + out).code, 2);
 }
 
 TEST(StudyCommand, HelpNamesTheWays) {
