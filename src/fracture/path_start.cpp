@@ -161,7 +161,8 @@ std::optional<InitialCrack> start_crack(const mesh::TornMesh& body, std::span<co
   PrincipalStress decisive;
   std::vector<Outside> faces;
   for (const TetStress& tet : tets) {
-    if (tet.at_hand) continue;
+    // No principal stress is larger than the norm: below the strength, where most tets are, none is worked out.
+    if (tet.at_hand || tet.stress.norm() < strength) continue;
     const PrincipalStress principal = principal_stress(tet.stress);
     if (principal.value[0] < strength || (worst != nullptr && principal.value[0] <= decisive.value[0])) continue;
     std::vector<Outside> of_tet = outside_of(body, tet.tet);

@@ -118,7 +118,7 @@ bool TearSession::start_crack(TickReport& report, const Observer& observer) {
   if (!settings_.strength || !hand_.holds()) return false;
   const Stopwatch watch;
   VectorX u;
-  displacement(u);
+  displacement(surface_basis_, u);
   std::optional<fracture::FirstCut> first =
       fracture::cut_first(body_, surface_stresses(u), *settings_.strength, surroundings_, incision_settings());
   if (!first) return false;

@@ -134,6 +134,7 @@ void TearSession::make_local_objects() {
   local_basis_.assign(local_.size(), {});
   solve_local_objects();
   surface_tets_.clear();
+  surface_basis_.clear();
   if (!running_.empty()) return;
   for (const mesh::TetFace& face : mesh::solved_surface(body_)) {
     if (surface_tets_.empty() || surface_tets_.back() != face.tet) surface_tets_.push_back(face.tet);

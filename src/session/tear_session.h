@@ -132,6 +132,7 @@ class TearSession {
   std::vector<fracture::LocalObject> local_;                 ///< one for each of those
   std::vector<response::ForceBasis> local_basis_;            ///< of their nodes
   std::vector<TetId> surface_tets_;                          ///< while no crack runs: where one may start
+  response::ForceBasis surface_basis_;                       ///< of every node, then
   std::vector<AdvanceRecord> advances_;
   fracture::Pieces pieces_;
   Hand hand_;

@@ -160,14 +160,6 @@ struct LiveCase {
     const wire::PayloadUnion last = frames.last(wire::Payload::State);
     return last.AsState() != nullptr ? *last.AsState() : wire::StateT();
   }
-  /// Waits for a notice with `part` in it.
-  [[nodiscard]] bool says(const std::string& part) const {
-    return wait_until([&] {
-      const std::vector<std::string> notices = frames.notices();
-      return std::any_of(notices.begin(), notices.end(),
-                         [&](const std::string& text) { return text.find(part) != std::string::npos; });
-    });
-  }
   /// Of the first body: a face whose corners are all near `at`.
   [[nodiscard]] wire::PayloadUnion grasp_near(const Vec3& at) const {
     const wire::PayloadUnion last = frames.last(wire::Payload::Body);

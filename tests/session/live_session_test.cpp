@@ -80,7 +80,7 @@ TEST(LiveSession, AHandHoldsPullsTearsLetsGoAndTakesItsTearsBack) {
   at.live->post(payload(wire::ResetT()));
   ASSERT_TRUE(wait_until([&] { return at.state().advances == 1; }));
   at.live->post(payload(wire::UndoT()));
-  EXPECT_TRUE(at.says("there is no tear to take back"));
+  EXPECT_TRUE(at.hears("there is no tear to take back"));
   EXPECT_EQ(at.state().advances, 1U);
 }
 
@@ -246,7 +246,7 @@ TEST(LiveSession, ARecordingNeedsNoMeshFile) {
   set.key = "mesh.file";
   set.value = "second.msh.gz";
   at.live->post(payload(set));
-  EXPECT_TRUE(at.says("second.msh.gz' has not been read"));
+  EXPECT_TRUE(at.hears("second.msh.gz' has not been read"));
   wire::OpenSceneT open;
   open.file = second;
   EXPECT_TRUE(opens(payload(open)));

@@ -241,6 +241,28 @@ TEST(TearSession, OneAdvanceATimeIsOneLongTickInParts) {
   EXPECT_TRUE(right) << "one of the cracks alone has run";
 }
 
+TEST(TearSession, ABasisKnowsTheDisplacementOfEveryNode) {
+  PlateCase plate;
+  plate.settings.body.density = 1000.0;
+  plate.settings.body.gravity = {0.0, -0.2, 0.1};
+  const auto tear = plate.make();
+  ASSERT_TRUE(tear->grasp(plate.at).has_value());
+  response::ForceBasis basis;
+  int advances = 0;
+  for (int k = 1; k <= 100; ++k) {
+    const int tore = tear->tick(plate.by * (k / 100.0) + Vec3(0.0, 0.01 * std::sin(0.3 * k), 1e-4 * k)).advances;
+    if (tore > 0) basis.clear();
+    advances += tore;
+    VectorX by_basis;
+    VectorX solved;
+    tear->displacement(basis, by_basis);
+    tear->displacement(solved);
+    // A few sums, of solutions with the same factor.
+    EXPECT_LT((by_basis - solved).norm(), 1e-12 * solved.norm()) << k;
+  }
+  EXPECT_GT(advances, 3);
+}
+
 TEST(TearSession, TheSameBitsWhateverTheThreads) {
   const PlateCase plate;
   std::vector<Trace> traces;
