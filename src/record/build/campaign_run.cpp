@@ -17,6 +17,9 @@ namespace rhexis::record::build {
 namespace fs = std::filesystem;
 namespace {
 
+/// In the folder of the parts: the fingerprint of their record.
+constexpr const char* kTag = "fingerprint";
+
 /// A lock that goes with the process, however that ends.
 class MergeLock {
  public:
@@ -42,6 +45,7 @@ CampaignRun::CampaignRun(const Campaign& campaign, const fs::path& file, Rank ra
       numbering_(campaign.head().parameters),
       file_(file),
       parts_(file.string() + ".parts"),
+      tag_(fmt::format("{:016x}\n", campaign.head().fingerprint)),
       rank_(rank),
       observe_(observe),
       there_(static_cast<std::size_t>(numbering_.count())) {}
@@ -57,13 +61,16 @@ Expected<bool> CampaignRun::file_is_there() const {
   return fail("there is a file of that name, and not of this record", "another --out, or remove it", file_.string());
 }
 
+/// Whose the parts are, as a text; empty: nobody's.
+std::string CampaignRun::parts_tag() const {
+  std::ifstream stream(parts_ / kTag, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 Expected<void> CampaignRun::open_parts() {
-  const std::string mine = fmt::format("{:016x}\n", campaign_.head().fingerprint);
-  const fs::path tag = parts_ / "fingerprint";
-  std::ifstream stream(tag, std::ios::binary);
-  if (!stream.is_open()) return write_atomically(tag, mine);
-  const std::string there(std::istreambuf_iterator<char>(stream), {});
-  if (there == mine) return {};
+  const std::string there = parts_tag();
+  if (there.empty()) return write_atomically(parts_ / kTag, tag_);
+  if (there == tag_) return {};
   return fail("what was computed there is of another record: the scene, the mesh or the program has changed",
               "another --out, or remove that folder", parts_.string());
 }
@@ -87,6 +94,7 @@ Expected<CampaignReport> CampaignRun::run() {
   if (!there) return fail(std::move(there.error()));
   std::error_code code;
   if (*there) {
+    if (parts_tag() == tag_) fs::remove_all(parts_, code);  // left by one that was killed after all was done
     report_.ending = Ending::was_there;
     report_.file_bytes = fs::file_size(file_, code);
     return report_;
@@ -145,7 +153,7 @@ void CampaignRun::make(int number, const FactoredState& state) {
   Expected<void> written = write_part(part(number), campaign_.head().fingerprint, number, data);
   std::error_code code;
   if (!written && fs::exists(part(number), code)) written = Expected<void>();  // another process was there first
-  if (!written && fs::exists(file_, code)) finished_ = true;     // and all of it is done
+  if (!written && fs::exists(file_, code)) finished_ = true;                   // and all of it is done
   there_[static_cast<std::size_t>(number)] = 1;
   const std::lock_guard lock(mutex_);
   if (!written && !finished_ && trouble_) trouble_ = fail(std::move(written.error()));

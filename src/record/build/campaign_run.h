@@ -5,6 +5,7 @@
 #include <atomic>
 #include <filesystem>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "record/build/campaign.h"
@@ -21,6 +22,7 @@ class CampaignRun {
   enum class Order { forwards, backwards };
   [[nodiscard]] std::filesystem::path part(int number) const;
   Expected<bool> file_is_there() const;
+  [[nodiscard]] std::string parts_tag() const;
   Expected<void> open_parts();
   void find_parts();
   void work_on(const std::vector<int>& families, Order order);
@@ -36,6 +38,7 @@ class CampaignRun {
   store::Numbering numbering_;
   std::filesystem::path file_;
   std::filesystem::path parts_;
+  std::string tag_;
   Rank rank_;
   const Campaign::Observer& observe_;
   std::vector<std::atomic<char>> there_;  ///< per topology: its part has been seen

@@ -214,7 +214,12 @@ TEST(Campaign, IsTheSameBytesHoweverItIsCutUp) {
   // Of two ranks the first to come does its share, and here also the other's.
   EXPECT_EQ(run(request, folder / "ranks.h5", {1, 2}).ending, Ending::complete);
   EXPECT_TRUE(slurp(folder / "ranks.h5") == whole);
+  // Killed when the record stood, and its parts too.
+  fs::create_directories(folder / "ranks.h5.parts");
+  std::ofstream(folder / "ranks.h5.parts/fingerprint")
+      << fmt::format("{:016x}\n", *store::fingerprint_of(folder / "ranks.h5"));
   EXPECT_EQ(run(request, folder / "ranks.h5", {0, 2}).ending, Ending::was_there);
+  EXPECT_FALSE(fs::exists(folder / "ranks.h5.parts"));
 }
 
 TEST(Campaign, MeetsNoOtherRecord) {
