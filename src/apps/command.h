@@ -42,6 +42,7 @@ void print_json(const nlohmann::ordered_json& json);
 /// Each adds its subcommand to the app and writes its exit code to `code` when it has run.
 void add_solve(CLI::App& app, const Common& common, int& code);
 void add_tear(CLI::App& app, const Common& common, int& code);
+void add_precompute(CLI::App& app, const Common& common, int& code);
 void add_play(CLI::App& app, const Common& common, int& code);
 void add_replay(CLI::App& app, const Common& common, int& code);
 void add_devices(CLI::App& app, const Common& common, int& code);

@@ -49,6 +49,7 @@ int run(int argc, char** argv) {
   int code = kDone;
   add_solve(app, common, code);
   add_tear(app, common, code);
+  add_precompute(app, common, code);
   add_play(app, common, code);
   add_replay(app, common, code);
   add_devices(app, common, code);

@@ -203,6 +203,15 @@ std::optional<Advance> plan_advance(const Crack& crack, std::span<const Judgemen
   return advance;
 }
 
+Advance imposed_advance(const Crack& crack, const Vec3& direction, double length, const Surroundings& surroundings) {
+  Judgement said;
+  said.met = true;
+  said.direction = direction;
+  said.length = length;
+  const std::vector<Judgement> all(front_sections(crack, surroundings.mean_edge()).size(), said);
+  return *plan_advance(crack, all, surroundings);
+}
+
 CutSurface sweep(const Crack& crack, const Advance& advance, double margin) {
   // Both fronts, longer at their ends by the margin, as strips of two triangles: (before, after) pairs along the front.
   std::vector<std::array<Vec3, 2>> rungs;

@@ -40,6 +40,11 @@ struct Advance {
 [[nodiscard]] std::optional<Advance> plan_advance(const Crack& crack, std::span<const Judgement> judgements,
                                                   const Surroundings& surroundings);
 
+/// An unfinished crack goes on by `length` (m) along `direction` (unit, normal to its front), whatever a criterion
+/// says.
+[[nodiscard]] Advance imposed_advance(const Crack& crack, const Vec3& direction, double length,
+                                      const Surroundings& surroundings);
+
 /// The surface between the front and where the steps lead, extended by `margin` (m) beyond the front's ends. Normals as
 /// those of the front: upper flank above.
 [[nodiscard]] CutSurface sweep(const Crack& crack, const Advance& advance, double margin);

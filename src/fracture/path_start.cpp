@@ -208,6 +208,15 @@ std::optional<InitialCrack> start_crack(const mesh::TornMesh& body, std::span<co
   return out.cracks.empty() ? std::nullopt : std::optional(out);
 }
 
+Expected<FirstCut> cut_initial(const mesh::TornMesh& body, const Vec3& from, const Vec3& to, const Vec3& through,
+                               const Surroundings& surroundings, const IncisionSettings& settings) {
+  Expected<InitialCrack> start = make_crack(from, to, through, surroundings);
+  if (!start) return fail(std::move(start.error()));
+  Incision incision = incise(body, surroundings, start->surface, settings);
+  if (incision.edit.empty()) return fail("the crack opens nothing in the mesh", "a longer crack, or a finer mesh");
+  return FirstCut{std::move(*start), std::move(incision)};
+}
+
 std::optional<FirstCut> cut_first(const mesh::TornMesh& body, std::span<const TetStress> tets, double strength,
                                   const Surroundings& surroundings, const IncisionSettings& settings) {
   for (double larger = 1.0; larger <= kLargestFirst; larger += kFirstGrowth) {

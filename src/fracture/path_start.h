@@ -41,6 +41,10 @@ struct FirstCut {
   InitialCrack start;
   Incision incision;  ///< opens something
 };
+/// make_crack and its incision. Errors: as make_crack; a crack that opens nothing.
+[[nodiscard]] Expected<FirstCut> cut_initial(const mesh::TornMesh& body, const Vec3& from, const Vec3& to,
+                                             const Vec3& through, const Surroundings& surroundings,
+                                             const IncisionSettings& settings);
 /// start_crack and its incision: at its size or, where that opens nothing, at the least of up to four times it that
 /// does. By splitting, a cut of one edge often does not free a single face. Empty as start_crack, or when none opens
 /// anything.

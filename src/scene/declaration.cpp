@@ -32,6 +32,7 @@ std::string name_of(const Key& key) {
     case Kind::set: return "the name of a set in quotes";
     case Kind::vector: return "three numbers";
     case Kind::indices: return "a list of integers";
+    case Kind::numbers: return "a list of numbers";
     case Kind::number_or_auto: return "\"auto\" or a number";
     case Kind::length: return "a number in m, or a percentage of the body's box as \"50%\"";
     case Kind::box: return "{ from = [x, y, z], to = [x, y, z] } in fractions of the bounding box";
@@ -83,7 +84,8 @@ std::string wanted(const Key& key) {
   std::string text = name_of(key);
   if (!key.unit.empty() && key.kind != Kind::length) text += " in " + key.unit;
   if (const std::string range = text_of(key.range); !range.empty()) {
-    const bool many = key.kind == Kind::vector || key.kind == Kind::indices || key.kind == Kind::box;
+    const bool many =
+        key.kind == Kind::vector || key.kind == Kind::indices || key.kind == Kind::numbers || key.kind == Kind::box;
     text += (many ? ", each " : ", ") + range;
   }
   return text;

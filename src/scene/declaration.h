@@ -22,12 +22,13 @@ enum class Kind {
   set,             ///< the name of a node or face set
   vector,          ///< three numbers
   indices,         ///< a list of integers
+  numbers,         ///< a list of numbers
   number_or_auto,  ///< a number or "auto"
   length,          ///< metres, or "50%" of the body's box in the direction of the component
   box,             ///< { from = [...], to = [...] }, fractions of the bounding box
 };
 
-/// Of a number; of each entry for vectors, indices and boxes; of the number or percentage for lengths.
+/// Of a number; of each entry for vectors, lists and boxes; of the number or percentage for lengths.
 struct Range {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();

@@ -2,6 +2,7 @@
 
 #include "mesh/body_request.h"
 #include "model/make_model.h"
+#include "record/store/parameters.h"
 #include "scene/declaration.h"
 #include "scene/units.h"
 
@@ -428,12 +429,53 @@ Section pull() {
           }};
 }
 
+Section record() {
+  return {.name = "record",
+          .doc =
+              "What `rhexis precompute` varies; the defaults are those of the thesis (its Table 5.5). Angles are those "
+              "of the crack: 90 degrees is the way that `[[crack]]` points, see docs/record-format.md.",
+          .keys = {
+              {.name = "advances",
+               .kind = Kind::integer,
+               .range = within(1, record::store::kMostAdvances),
+               .fallback = "2",
+               .doc = "How often the crack runs on; each multiplies the topologies by directions times lengths."},
+              {.name = "directions",
+               .kind = Kind::integer,
+               .range = within(1, 1441),
+               .fallback = "13",
+               .doc = "Of an advance, evenly over 0 to 180 degrees; one alone runs straight on."},
+              {.name = "lengths",
+               .kind = Kind::numbers,
+               .unit = "m",
+               .range = kLength,
+               .fallback = "[0.0403]",
+               .doc = "Of an advance, ascending."},
+              {.name = "pull_directions",
+               .kind = Kind::integer,
+               .range = within(1, 3600),
+               .fallback = "36",
+               .doc = "In the plane across the front, evenly around. The model is linear: they take no room."},
+              {.name = "pull_length",
+               .kind = Kind::number,
+               .unit = "m",
+               .range = kLength,
+               .fallback = "0.12",
+               .doc = "Of a recorded pull, to which others are scaled."},
+              {.name = "precision",
+               .kind = Kind::choice,
+               .fallback = "\"double\"",
+               .names = {"double", "single"},
+               .doc = "Of the global operators. Forces are kept in double in any case."},
+          }};
+}
+
 }  // namespace
 
 std::span<const Section> scene_sections() {
-  static const std::vector<Section> sections{root(),    mesh(),        sets(),     material(), model(),
-                                             support(), traction(),    pressure(), solver(),   fracture(),
-                                             crack(),   interaction(), pull()};
+  static const std::vector<Section> sections{root(),    mesh(),     sets(),        material(), model(),
+                                             support(), traction(), pressure(),    solver(),   fracture(),
+                                             crack(),   record(),   interaction(), pull()};
   return sections;
 }
 

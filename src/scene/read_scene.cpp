@@ -83,11 +83,12 @@ Expected<Scene> settings_of(const Values& values, const std::string& file) {
     scene.pressures.push_back({read_faces(entry), entry.get<double>("value")});
   for (const SectionValues& entry : values.all("pull")) scene.pulls.push_back(read_pull(entry));
 
-  const std::array<Expected<void>, 5> read{
+  const std::array<Expected<void>, 6> read{
       take(read_mesh_section(values.one("mesh"), folder, scene), scene.mesh),
       take(read_material_section(values.one("material"), scene), scene.material),
       read_list(values.all("support"), scene.supports, read_support),
       read_list(values.all("crack"), scene.cracks, read_crack),
+      take(read_record_section(values.one("record")), scene.record),
       take(read_interaction_section(values.one("interaction"), folder, scene), scene.interaction),
   };
   for (const Expected<void>& part : read)

@@ -57,6 +57,9 @@ strength = 0.4e6                          # Pa
 from = [-0.005, 0.0, 0.02]
 to = [-0.003, 0.0, 0.02]
 through = [0.0, 1.0, 0.0]
+[record]                                  # of `rhexis precompute`
+advances = 2
+lengths = [0.002]                         # m
 [interaction]
 response = "exact"
 [[pull]]

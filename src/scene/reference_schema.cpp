@@ -45,6 +45,7 @@ Json value_schema(const Key& key) {
     case Kind::choice: return {{"type", "string"}, {"enum", key.names}};
     case Kind::vector: return vector_schema(key.range);
     case Kind::indices: return {{"type", "array"}, {"items", number_schema(key.range, "integer")}};
+    case Kind::numbers: return {{"type", "array"}, {"items", number_schema(key.range)}, {"minItems", 1}};
     case Kind::number_or_auto: return {{"anyOf", {number_schema(key.range), {{"type", "string"}, {"enum", {"auto"}}}}}};
     case Kind::length:
       return {

@@ -16,6 +16,7 @@
 #include "material/parameters.h"
 #include "mesh/generate.h"
 #include "model/make_model.h"
+#include "record/store/parameters.h"
 #include "scene/document.h"
 #include "scene/values.h"
 #include "solver/options.h"
@@ -130,6 +131,11 @@ struct PullSettings {
   Place place;
 };
 
+struct RecordSettings {
+  record::store::Parameters parameters;
+  bool single_precision = false;  ///< of the global operators
+};
+
 struct Scene {
   std::string file;  ///< as the user named it
   std::string title;
@@ -144,6 +150,7 @@ struct Scene {
   SolverSettings solver;
   std::optional<FractureSettings> fracture;
   std::vector<CrackSettings> cracks;
+  RecordSettings record;
   InteractionSettings interaction;
   std::vector<PullSettings> pulls;
   std::vector<std::string> warnings;  ///< one line each, placed: what was given and is not read

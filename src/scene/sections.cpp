@@ -1,6 +1,7 @@
 #include "scene/sections.h"
 
 #include <algorithm>
+#include <functional>
 #include <optional>
 
 #include <Eigen/Geometry>
@@ -167,6 +168,22 @@ Expected<CrackSettings> read_crack(const SectionValues& values) {
     return values.place_of("through").fail("'through' does not span a plane with the crack",
                                            "a direction across 'to' - 'from'");
   return crack;
+}
+
+Expected<RecordSettings> read_record_section(const SectionValues& values) {
+  const auto integer = [&](std::string_view key) { return static_cast<int>(values.get<std::int64_t>(key)); };
+  RecordSettings record;
+  record.parameters = {.advances = integer("advances"),
+                       .directions = integer("directions"),
+                       .lengths = values.get<std::vector<double>>("lengths"),
+                       .pull_directions = integer("pull_directions"),
+                       .pull_length = values.get<double>("pull_length")};
+  record.single_precision = values.get<std::string>("precision") == "single";
+  const std::vector<double>& lengths = record.parameters.lengths;
+  if (lengths.empty()) return values.place_of("lengths").fail("'record.lengths' is empty", "one length at least");
+  if (std::adjacent_find(lengths.begin(), lengths.end(), std::greater_equal<>()) != lengths.end())
+    return values.place_of("lengths").fail("'record.lengths' do not ascend", "each longer than the one before");
+  return record;
 }
 
 Expected<InteractionSettings> read_interaction_section(const SectionValues& values, const fs::path& folder,

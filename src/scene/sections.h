@@ -16,6 +16,7 @@ ModelChoice read_model_section(const SectionValues& values, Scene& scene);
 Expected<SupportSettings> read_support(const SectionValues& values);
 Expected<FractureSettings> read_fracture_section(const SectionValues& values, Scene& scene);
 Expected<CrackSettings> read_crack(const SectionValues& values);
+Expected<RecordSettings> read_record_section(const SectionValues& values);
 Expected<InteractionSettings> read_interaction_section(const SectionValues& values, const std::filesystem::path& folder,
                                                        Scene& scene);
 

@@ -11,12 +11,8 @@ std::string model_name(const Scene& scene) {
   return in_quotes(model::kModelNames[static_cast<std::size_t>(scene.model.kind)]);
 }
 
-/// What a script needs, as far as it can be seen without the mesh.
-Expected<void> check_script(const Scene& scene) {
-  if (!scene.fracture)
-    return fail("the scene does not say when the body tears", "add a [fracture] with 'strength' or 'toughness'",
-                scene.file);
-  if (scene.pulls.empty()) return fail("nothing pulls at the body", "add a [[pull]]", scene.file);
+/// What only a body of small strains can do.
+Expected<void> check_linear(const Scene& scene) {
   if (scene.model.kind != model::ModelKind::linear)
     return scene.model.kind_place.fail(fmt::format("a body with model {} cannot be torn yet", model_name(scene)),
                                        "kind = \"linear\"");
@@ -24,6 +20,32 @@ Expected<void> check_script(const Scene& scene) {
     return scene.pressures.front().faces.place.fail("a pressure follows the surface, which the linear model cannot",
                                                     "a [[traction]] in a fixed direction");
   return {};
+}
+
+/// What a script needs, as far as it can be seen without the mesh.
+Expected<void> check_script(const Scene& scene) {
+  if (!scene.fracture)
+    return fail("the scene does not say when the body tears", "add a [fracture] with 'strength' or 'toughness'",
+                scene.file);
+  if (scene.pulls.empty()) return fail("nothing pulls at the body", "add a [[pull]]", scene.file);
+  return check_linear(scene);
+}
+
+/// The same for a record.
+Expected<void> check_record(const Scene& scene) {
+  if (scene.cracks.size() != 1) {
+    const std::string what = fmt::format("{} cracks, of which a record follows one", scene.cracks.size());
+    return scene.cracks.empty() ? fail(what, "add a [[crack]]", scene.file)
+                                : scene.cracks[1].place.fail(what, "one [[crack]]");
+  }
+  if (scene.fracture && scene.fracture->incision != "keep-nodes")
+    return scene.fracture->place.fail(fmt::format("incision {} adds nodes, and a record needs operators of one size",
+                                                  in_quotes(scene.fracture->incision)),
+                                      "incision = \"keep-nodes\"");
+  if (record::store::Numbering::count_of(scene.record.parameters) > record::store::kMostTopologies)
+    return fail(fmt::format("the record has more than {} topologies", record::store::kMostTopologies),
+                "fewer advances, directions or lengths in [record]", scene.file);
+  return check_linear(scene);
 }
 
 /// What a hand does without, in words.
@@ -59,12 +81,12 @@ bool is_for_tearing(const Scene& scene) { return scene.fracture.has_value() && !
 Expected<TearProblem> build_tear_problem(const Scene& scene, Puller puller) {
   TearProblem problem;
   problem.warnings = scene.warnings;
-  if (puller == Puller::hand) {
-    warn_hand(scene, problem.warnings);
-  } else if (Expected<void> done = check_script(scene); !done) {
-    return fail(std::move(done.error()));
-  }
-  if (scene.interaction.response == "recorded")
+  if (puller == Puller::hand) warn_hand(scene, problem.warnings);
+  Expected<void> checked;
+  if (puller == Puller::script) checked = check_script(scene);
+  if (puller == Puller::record) checked = check_record(scene);
+  if (!checked) return fail(std::move(checked.error()));
+  if (scene.interaction.response == "recorded" && puller != Puller::record)
     return scene.interaction.place->fail("response = \"recorded\" is not there yet", "response = \"exact\"");
   problem.title = title_of(scene);
   problem.body.elastic = scene.material.elastic;
@@ -73,6 +95,7 @@ Expected<TearProblem> build_tear_problem(const Scene& scene, Puller puller) {
   problem.tears = scene.fracture.has_value();
   if (problem.tears) problem.fracture = *scene.fracture;
   problem.cracks = scene.cracks;
+  problem.record = scene.record;
   problem.interaction = scene.interaction;
   problem.pulls = scene.pulls;
   problem.notes = scene.notes;

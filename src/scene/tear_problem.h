@@ -19,6 +19,7 @@ struct TearProblem {
   FractureSettings fracture;
   bool tears = true;  ///< false: the scene does not say when, and `fracture` is empty
   std::vector<CrackSettings> cracks;
+  RecordSettings record;
   InteractionSettings interaction;
   std::vector<PullSettings> pulls;
   std::vector<std::string> warnings;  ///< one line each
@@ -31,11 +32,14 @@ struct TearProblem {
 /// Who asks. script: the scene alone says what happens, so that it has to say all. hand: someone holds the body, and a
 /// scene made for `rhexis solve` opens too: without `[[pull]]` nothing is scripted, without `[fracture]` it bends and
 /// does not tear, another model becomes `linear`, and a pressure acts on the surface as it was at rest; warnings say
-/// so.
-enum class Puller { script, hand };
+/// so. record: the campaign of `rhexis precompute`, which needs a `[[crack]]` that runs on and tets that are taken
+/// away.
+enum class Puller { script, hand, record };
 
 /// Reads or generates the mesh and holds the scene against it. Errors beside those of build_problem: a response that is
-/// not there; for a script also no `[fracture]`, no `[[pull]]`, a model other than `linear`, a pressure.
+/// not there; for a script also no `[fracture]`, no `[[pull]]`; for a record other than one `[[crack]]`, another
+/// incision than `keep-nodes`, more topologies than a record may have; for both a model other than `linear`, a
+/// pressure.
 [[nodiscard]] Expected<TearProblem> build_tear_problem(const Scene& scene, Puller puller = Puller::script);
 
 }  // namespace rhexis::scene

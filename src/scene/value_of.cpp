@@ -59,7 +59,8 @@ class Reader {
       case Kind::set: return text();
       case Kind::choice: return choice();
       case Kind::vector: return vector(node_, path_).map([](const Vec3& value) { return Value(value); });
-      case Kind::indices: return indices();
+      case Kind::indices: return list<std::int64_t>(&Reader::integer);
+      case Kind::numbers: return list<double>(&Reader::number);
       case Kind::number_or_auto: return number_or_auto();
       case Kind::length: return length();
       case Kind::box: return box();
@@ -132,12 +133,13 @@ class Reader {
     return value;
   }
 
-  Expected<Value> indices() const {
+  template <class Entry>
+  Expected<Value> list(Expected<Entry> (Reader::*read_entry)(const Node&, const std::string&) const) const {
     const Array* items = node_.as<Array>();
     if (items == nullptr) return wrong_type();
-    std::vector<std::int64_t> value;
+    std::vector<Entry> value;
     for (std::size_t i = 0; i < items->size(); ++i) {
-      const Expected<std::int64_t> entry = integer((*items)[i], fmt::format("{}.{}", path_, i));
+      const Expected<Entry> entry = (this->*read_entry)((*items)[i], fmt::format("{}.{}", path_, i));
       if (!entry) return fail(entry.error());
       value.push_back(*entry);
     }

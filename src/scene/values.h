@@ -28,7 +28,8 @@ struct Box {
 };
 
 /// "auto" of number_or_auto is the std::string.
-using Value = std::variant<bool, std::int64_t, double, std::string, Vec3, std::vector<std::int64_t>, Length, Box>;
+using Value = std::variant<bool, std::int64_t, double, std::string, Vec3, std::vector<std::int64_t>,
+                           std::vector<double>, Length, Box>;
 
 struct Setting {
   Value value;

@@ -1,9 +1,9 @@
 #include "session/recording_file.h"
 
 #include <algorithm>
-#include <fstream>
 
 #include "mesh/io/hdf5_checks.h"
+#include "mesh/io/hdf5_scalars.h"
 #include "session/recording_scene.h"
 #include "session/recording_tables.h"
 
@@ -13,46 +13,10 @@ namespace {
 using mesh::io::Hdf5Handle;
 using mesh::io::Hdf5Quiet;
 
-constexpr std::size_t kLongestText = std::size_t{1} << 16;
 constexpr hsize_t kLargestChunk = hsize_t{1} << 24;  // bytes; a recorder's are a hundredth of that
 /// What a writer may be in the middle of is read again until its checksum is right. HDF5 waits 1 ns before the second
 /// attempt, twice as long before each that follows, and by itself makes 100: for ever, where a file is garbled.
 constexpr unsigned kAttempts = 20;
-
-/// A string of fixed size, as a recorder writes them; empty: none.
-std::string text_attribute(hid_t file, const char* name) {
-  if (H5Aexists(file, name) <= 0) return {};
-  const Hdf5Handle attribute(H5Aopen(file, name, H5P_DEFAULT), H5Aclose);
-  const Hdf5Handle type(attribute.valid() ? H5Aget_type(attribute) : -1, H5Tclose);
-  if (!type.valid() || H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0) return {};
-  const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
-  if (!space.valid() || H5Sget_simple_extent_type(space) != H5S_SCALAR) return {};
-  const std::size_t size = H5Tget_size(type);
-  if (size == 0 || size > kLongestText) return {};
-  std::string text(size, '\0');
-  if (H5Aread(attribute, type, text.data()) < 0) return {};
-  return text.substr(0, text.find('\0'));
-}
-
-std::int64_t number_attribute(hid_t file, const char* name) {
-  if (H5Aexists(file, name) <= 0) return -1;
-  const Hdf5Handle attribute(H5Aopen(file, name, H5P_DEFAULT), H5Aclose);
-  const Hdf5Handle type(attribute.valid() ? H5Aget_type(attribute) : -1, H5Tclose);
-  const Hdf5Handle space(attribute.valid() ? H5Aget_space(attribute) : -1, H5Sclose);
-  if (!type.valid() || H5Tequal(type, H5T_STD_I64LE) <= 0 || !space.valid() ||
-      H5Sget_simple_extent_type(space) != H5S_SCALAR)
-    return -1;
-  std::int64_t value = -1;
-  return H5Aread(attribute, H5T_NATIVE_INT64, &value) < 0 ? -1 : value;
-}
-
-bool has_signature(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::array<char, 8> start{};
-  stream.read(start.data(), start.size());
-  constexpr std::array<char, 8> kSignature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
-  return stream.gcount() == 8 && start == kSignature;
-}
 
 }  // namespace
 
@@ -67,7 +31,7 @@ Expected<RecordingFile> RecordingFile::open(const std::filesystem::path& path) {
   std::error_code code;
   if (!std::filesystem::is_regular_file(path, code)) return out.wrong("there is no such file");
   out.file_bytes_ = std::filesystem::file_size(path, code);
-  if (code || !has_signature(out.name_)) return out.wrong("not an HDF5 file");
+  if (code || !mesh::io::has_hdf5_signature(path)) return out.wrong("not an HDF5 file");
   // As one who reads while another writes: so a file opens whose writer was killed.
   const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_metadata_read_attempts(access, kAttempts);
@@ -97,12 +61,12 @@ Expected<RecordingFile> RecordingFile::open(const std::filesystem::path& path) {
 }
 
 Expected<void> RecordingFile::read_head() {
-  if (text_attribute(file_, "format") != kRecordingFormat) return wrong("not a recording");
-  const std::int64_t version = number_attribute(file_, "version");
-  if (version != kRecordingVersion)
+  if (mesh::io::text_attribute(file_, "format") != kRecordingFormat) return wrong("not a recording");
+  std::int64_t version = -1;
+  if (!mesh::io::number_attribute(file_, "version", version) || version != kRecordingVersion)
     return fail(fmt::format("a recording of version {}", version),
                 fmt::format("version {}, which this program reads", kRecordingVersion), name_);
-  Expected<RecordingHead> head = parse_recording_head(text_attribute(file_, "settings"));
+  Expected<RecordingHead> head = parse_recording_head(mesh::io::text_attribute(file_, "settings"));
   if (!head) return fail(head.error().at(name_));
   head_ = std::move(*head);
   return {};

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "mesh/io/hdf5_scalars.h"
 #include "session/recording_tables.h"
 
 namespace rhexis::session {
@@ -23,20 +24,6 @@ Hdf5Handle make_table(hid_t file, const char* name) {
   if (!space.valid() || !properties.valid() || H5Pset_chunk(properties, 1, &chunk) < 0) return {};
   const Hdf5Handle type = row_type<Row>();
   return {H5Dcreate2(file, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose};
-}
-
-bool set_text(hid_t file, const char* name, const std::string& text) {
-  const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type, text.size());
-  const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Hdf5Handle attribute(H5Acreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  return attribute.valid() && H5Awrite(attribute, type, text.data()) >= 0;
-}
-
-bool set_number(hid_t file, const char* name, std::int64_t value) {
-  const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Hdf5Handle attribute(H5Acreate2(file, name, H5T_STD_I64LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  return attribute.valid() && H5Awrite(attribute, H5T_NATIVE_INT64, &value) >= 0;
 }
 
 }  // namespace
@@ -76,8 +63,9 @@ Expected<RecordingWriter> RecordingWriter::create(const std::filesystem::path& p
   out.flushes_ = make_table<FlushRow>(file, table::kFlushes);
   const bool made = out.ticks_.valid() && out.steps_.valid() && out.commands_.valid() && out.scenes_.valid() &&
                     out.frames_.valid() && out.bytes_.valid() && out.flushes_.valid();
-  if (!made || !set_text(file, "format", kRecordingFormat) || !set_number(file, "version", kRecordingVersion) ||
-      !set_text(file, "settings", text_of(head)) || H5Fflush(file, H5F_SCOPE_GLOBAL) < 0 ||
+  if (!made || !mesh::io::set_text_attribute(file, "format", kRecordingFormat) ||
+      !mesh::io::set_number_attribute(file, "version", kRecordingVersion) ||
+      !mesh::io::set_text_attribute(file, "settings", text_of(head)) || H5Fflush(file, H5F_SCOPE_GLOBAL) < 0 ||
       H5Fstart_swmr_write(file) < 0)
     return fail("the recording cannot be written", "room on the disk", out.name_);
   return out;

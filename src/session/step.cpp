@@ -51,13 +51,9 @@ void TearSession::tear(TickReport& report, const Observer& observer, int most_ad
 
 TickReport TearSession::impose(std::size_t crack, const Vec3& direction, double length, const Observer& observer) {
   RHEXIS_CHECK(crack < cracks_.size() && !cracks_[crack].finished, "crack {} of {}", crack, cracks_.size());
-  fracture::Judgement said;
-  said.met = true;
-  said.direction = direction;
-  said.length = length;
-  const std::vector<fracture::Judgement> all(fracture::front_sections(cracks_[crack], mean_edge()).size(), said);
   TickReport report;
-  run_on(crack, {.advance = *fracture::plan_advance(cracks_[crack], all, surroundings_)}, report, observer);
+  run_on(crack, {.advance = fracture::imposed_advance(cracks_[crack], direction, length, torn_.surroundings())}, report,
+         observer);
   report.force = hand_.force();
   return report;
 }
@@ -72,14 +68,14 @@ std::optional<TearSession::Judged> TearSession::judge(std::size_t crack) const {
   Judged out;
   if (settings_.toughness) {
     const std::vector<double> release = fracture::energy_release(
-        body_, settings_.body.elastic, front, local.tets(), local.gradients(),
+        body(), settings_.body.elastic, front, local.tets(), local.gradients(),
         {fracture::kInnerEdges * mean_edge(), fracture::kOuterEdges * mean_edge()}, body_force_);
     for (std::size_t k = 0; k < judgements.size(); ++k) {
       judgements[k] = fracture::by_toughness(judgements[k], release[k], *settings_.toughness, mean_edge());
       out.value = std::max(out.value, release[k]);
     }
   }
-  const std::optional<fracture::Advance> advance = fracture::plan_advance(front, judgements, surroundings_);
+  const std::optional<fracture::Advance> advance = fracture::plan_advance(front, judgements, torn_.surroundings());
   if (!advance) return std::nullopt;
   out.advance = *advance;
   if (!settings_.toughness) out.value = advance->value;
@@ -90,7 +86,8 @@ bool TearSession::run_on(std::size_t crack, Judged judged, TickReport& report, c
   const Stopwatch watch;
   fracture::Advance& advance = judged.advance;
   Change change;
-  change.incision = fracture::cut_along(body_, surroundings_, cracks_[crack], advance, incision_settings());
+  change.incision = fracture::cut_along(body(), torn_.surroundings(), cracks_[crack], advance,
+                                        torn_.incision_settings(hand_.nodes()));
   change.record.length = advance.length;
   change.record.angle = kDegrees * advance.angle;
   change.record.turn = kDegrees * advance.turn;
@@ -103,7 +100,8 @@ bool TearSession::run_on(std::size_t crack, Judged judged, TickReport& report, c
   }
   change.next_cracks = [&, crack] {
     std::vector<fracture::Crack> next = cracks_;
-    const std::vector<fracture::Crack> fronts = fracture::advanced(cracks_[crack], advance, surroundings_, body_);
+    const std::vector<fracture::Crack> fronts =
+        fracture::advanced(cracks_[crack], advance, torn_.surroundings(), body());
     next[crack] = fronts.front();
     next.insert(next.end(), fronts.begin() + 1, fronts.end());
     return next;
@@ -119,8 +117,8 @@ bool TearSession::start_crack(TickReport& report, const Observer& observer) {
   const Stopwatch watch;
   VectorX u;
   displacement(surface_basis_, u);
-  std::optional<fracture::FirstCut> first =
-      fracture::cut_first(body_, surface_stresses(u), *settings_.strength, surroundings_, incision_settings());
+  std::optional<fracture::FirstCut> first = fracture::cut_first(
+      body(), surface_stresses(u), *settings_.strength, torn_.surroundings(), torn_.incision_settings(hand_.nodes()));
   if (!first) return false;
   Change change = beginning(std::move(first->start.cracks), std::move(first->incision));
   change.seconds = watch.seconds();
@@ -145,12 +143,13 @@ bool TearSession::take(Change change, TickReport& report, const Observer& observ
   AdvanceRecord record = std::move(change.record);
   record.force_before = hand_.force();
   const std::vector<fracture::Crack> before = cracks_;
-  apply(std::move(change.incision.edit));
+  torn_.apply(std::move(change.incision.edit));
+  follow_nodes();
   cracks_ = change.next_cracks();
   record.remesh_seconds = change.seconds + watch.seconds();
 
   watch.restart();
-  const mesh::MeshEdit& edit = body_.history().back();
+  const mesh::MeshEdit& edit = body().history().back();
   reach_.resize(cracks_.size(), change.radius);
   reach_[change.crack] = change.radius;
   if (response_) {
@@ -162,7 +161,7 @@ bool TearSession::take(Change change, TickReport& report, const Observer& observ
       report.trouble = "the torn body is not stable: a part of it can move freely (hold it by another [[support]])";
       return false;
     }
-    if (hand_.has_lost_hold(body_)) {
+    if (hand_.has_lost_hold(body())) {
       hand_.let_go(*response_);
       report.let_go = true;
     }
@@ -174,7 +173,7 @@ bool TearSession::take(Change change, TickReport& report, const Observer& observ
   make_local_objects();
   record.local_seconds = watch.seconds();
 
-  record.topology = body_.topology();
+  record.topology = body().topology();
   record.tick = ticks_;
   record.edges_cut = change.incision.edges_cut;
   record.tets_removed = static_cast<int>(edit.removed.size());
@@ -194,19 +193,6 @@ bool TearSession::take(Change change, TickReport& report, const Observer& observ
   ++report.advances;
   if (observer) observer(advances_.back());
   return true;
-}
-
-void TearSession::apply(mesh::MeshEdit edit) {
-  body_.apply(std::move(edit));
-  follow_nodes();
-  fracture::update_pieces(pieces_, body_, body_.history().back(), held_);
-  std::vector<TetId> loose = fracture::unsupported_tets(body_, pieces_);
-  if (!loose.empty()) {
-    mesh::MeshEdit whole = body_.undo();
-    whole.frozen = std::move(loose);
-    body_.apply(std::move(whole));
-  }
-  surroundings_.follow(body_.history().back(), body_);
 }
 
 }  // namespace rhexis::session

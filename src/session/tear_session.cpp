@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "mesh/quality.h"
 #include "response/exact_response.h"
 
 namespace rhexis::session {
@@ -11,19 +10,21 @@ namespace {
 /// Of the local object where the scene gives none, in mean edge lengths.
 constexpr double kLocalRadius = 4.0;
 
+std::vector<std::int32_t> held_dofs(const std::vector<model::PrescribedDof>& supports) {
+  std::vector<std::int32_t> dofs;
+  for (const model::PrescribedDof& support : supports) dofs.push_back(support.dof);
+  return dofs;
+}
+
 }  // namespace
 
 TearSession::TearSession(const mesh::TetMesh& mesh, TearSettings settings)
-    : settings_(std::move(settings)), body_(mesh), surroundings_(mesh), hand_(settings_.contact) {
-  smallest_radius_ratio_ = mesh::measure_quality(mesh).radius_ratio.min;
+    : settings_(std::move(settings)),
+      torn_(mesh, held_dofs(settings_.body.supports), settings_.incision),
+      hand_(settings_.contact) {
   if (settings_.local_radius <= 0.0) settings_.local_radius = kLocalRadius * mean_edge();
   if (settings_.criterion.empty())
-    settings_.criterion = surroundings_.is_plate() ? "maximum-principal" : "maximum-hoop";
-  held_.assign(3 * mesh.node_count(), 0);
-  supported_.assign(mesh.node_count(), 0);
-  for (const model::PrescribedDof& support : settings_.body.supports)
-    held_[static_cast<std::size_t>(support.dof)] = supported_[static_cast<std::size_t>(support.dof / 3)] = 1;
-  pieces_ = fracture::find_pieces(body_, held_);
+    settings_.criterion = torn_.surroundings().is_plate() ? "maximum-principal" : "maximum-hoop";
   body_force_ = settings_.body.density * settings_.body.gravity;
   const VectorX& force = settings_.body.dead_force;
   if (force.size() > 0 && !force.isZero(0.0)) {
@@ -53,7 +54,7 @@ Expected<std::unique_ptr<TearSession>> TearSession::make(const mesh::TetMesh& me
   response::ExactSettings exact;
   exact.body = all.body;
   exact.in_background = all.background;
-  session->response_ = response::ExactResponse::make(session->body_, std::move(exact), session->foci());
+  session->response_ = response::ExactResponse::make(session->body(), std::move(exact), session->foci());
   if (!session->response_)
     return fail("the cracked body is not stable: a part of it can move freely", "hold it by another [[support]]");
   session->make_local_objects();
@@ -61,17 +62,16 @@ Expected<std::unique_ptr<TearSession>> TearSession::make(const mesh::TetMesh& me
 }
 
 Expected<void> TearSession::open(const CrackLine& line) {
-  Expected<fracture::InitialCrack> start = fracture::make_crack(line.from, line.to, line.through, surroundings_);
-  if (!start) return fail(std::move(start.error()));
-  fracture::Incision incision = fracture::incise(body_, surroundings_, start->surface, incision_settings());
-  if (incision.edit.empty()) return fail("the crack opens nothing in the mesh", "a longer crack, or a finer mesh");
+  Expected<fracture::FirstCut> cut = fracture::cut_initial(
+      body(), line.from, line.to, line.through, torn_.surroundings(), torn_.incision_settings(hand_.nodes()));
+  if (!cut) return fail(std::move(cut.error()));
   TickReport report;
-  take(beginning(std::move(start->cracks), std::move(incision)), report, {});
+  take(beginning(std::move(cut->start.cracks), std::move(cut->incision)), report, {});
   return {};
 }
 
 Expected<void> TearSession::grasp(const Vec3& at, response::ContactMode mode) {
-  Expected<void> holds = hand_.grasp(body_, at, mode, *response_);
+  Expected<void> holds = hand_.grasp(body(), at, mode, *response_);
   round_ = {};
   make_local_objects();
   return holds;
@@ -85,7 +85,7 @@ void TearSession::let_go() {
 
 bool TearSession::undo() {
   if (cracks_before_.empty()) return false;
-  const std::size_t remaining = body_.mesh().node_count() - body_.history().back().copied.size();
+  const std::size_t remaining = body().mesh().node_count() - body().history().back().copied.size();
   const auto held = hand_.nodes();
   if (std::any_of(held.begin(), held.end(), [&](NodeId node) { return node.index() >= remaining; }))
     hand_.let_go(*response_);
@@ -100,25 +100,15 @@ bool TearSession::undo() {
 }
 
 mesh::MeshEdit TearSession::take_back(const std::vector<fracture::Crack>& cracks) {
-  mesh::MeshEdit edit = body_.undo();
+  mesh::MeshEdit edit = torn_.undo();
   cracks_ = cracks;
   reach_.resize(cracks_.size(), 0.0);
   follow_nodes();
-  pieces_ = fracture::find_pieces(body_, held_);
   return edit;
 }
 
 void TearSession::follow_nodes() {
-  const std::size_t nodes = body_.mesh().node_count();
-  const std::size_t known = held_.size() / 3;
-  held_.resize(3 * nodes, 0);
-  supported_.resize(nodes, 0);
-  for (std::size_t node = known; node < nodes; ++node) {
-    const std::size_t parent = body_.original(NodeId(node)).index();
-    for (std::size_t c = 0; c < 3; ++c) held_[3 * node + c] = held_[3 * parent + c];
-    supported_[node] = supported_[parent];
-  }
-  if (!node_force_.empty()) node_force_.resize(nodes, Vec3::Zero());
+  if (!node_force_.empty()) node_force_.resize(body().mesh().node_count(), Vec3::Zero());
 }
 
 void TearSession::make_local_objects() {
@@ -128,15 +118,16 @@ void TearSession::make_local_objects() {
   for (std::size_t crack = 0; crack < cracks_.size(); ++crack) {
     if (cracks_[crack].finished) continue;
     running_.push_back(crack);
-    local_.emplace_back(body_, settings_.body.elastic, surroundings_.tets_near(body_, cracks_[crack], radius_of(crack)),
-                        supported_, hand_.nodes(), fracture::LocalLoads{body_force_, node_force_});
+    local_.emplace_back(body(), settings_.body.elastic,
+                        torn_.surroundings().tets_near(body(), cracks_[crack], radius_of(crack)), supported(),
+                        hand_.nodes(), fracture::LocalLoads{body_force_, node_force_});
   }
   local_basis_.assign(local_.size(), {});
   solve_local_objects();
   surface_tets_.clear();
   surface_basis_.clear();
   if (!running_.empty()) return;
-  for (const mesh::TetFace& face : mesh::solved_surface(body_)) {
+  for (const mesh::TetFace& face : mesh::solved_surface(body())) {
     if (surface_tets_.empty() || surface_tets_.back() != face.tet) surface_tets_.push_back(face.tet);
   }
 }
@@ -154,29 +145,19 @@ void TearSession::solve_local_objects() {
 }
 
 std::vector<fracture::TetStress> TearSession::surface_stresses(const VectorX& u) const {
-  std::vector<std::uint8_t> at_hand(body_.mesh().tet_count(), 0);
+  std::vector<std::uint8_t> at_hand(body().mesh().tet_count(), 0);
   for (const NodeId node : hand_.nodes()) {
-    for (const TetId tet : body_.tets_around(node)) at_hand[tet.index()] = 1;
+    for (const TetId tet : body().tets_around(node)) at_hand[tet.index()] = 1;
   }
   std::vector<fracture::TetStress> out;
   for (const TetId tet : surface_tets_) {
-    out.push_back(fracture::stress_of(body_, settings_.body.elastic, tet, u));
+    out.push_back(fracture::stress_of(body(), settings_.body.elastic, tet, u));
     out.back().at_hand = at_hand[tet.index()] != 0;
   }
   return out;
 }
 
 double TearSession::radius_of(std::size_t crack) const { return std::max(settings_.local_radius, reach_[crack]); }
-
-fracture::IncisionSettings TearSession::incision_settings() const {
-  fracture::IncisionSettings settings;
-  settings.method = settings_.incision;
-  settings.mean_edge = mean_edge();
-  settings.smallest_radius_ratio = smallest_radius_ratio_;
-  settings.immovable = supported_;
-  for (const NodeId node : hand_.nodes()) settings.immovable[node.index()] = 1;
-  return settings;
-}
 
 std::vector<response::Focus> TearSession::foci() const {
   std::vector<response::Focus> out;

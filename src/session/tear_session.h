@@ -11,12 +11,10 @@
 
 #include "base/error.h"
 #include "fracture/criterion.h"
-#include "fracture/front_surroundings.h"
 #include "fracture/local_object.h"
 #include "fracture/path.h"
 #include "fracture/path_start.h"
-#include "fracture/pieces.h"
-#include "mesh/torn_mesh.h"
+#include "fracture/torn_body.h"
 #include "response/force_basis.h"
 #include "response/response.h"
 #include "session/advance.h"
@@ -59,18 +57,18 @@ class TearSession {
   bool undo();
 
   [[nodiscard]] const TearSettings& settings() const { return settings_; }
-  [[nodiscard]] const mesh::TornMesh& body() const { return body_; }
+  [[nodiscard]] const mesh::TornMesh& body() const { return torn_.mesh(); }
   [[nodiscard]] const Hand& hand() const { return hand_; }
   [[nodiscard]] const std::vector<fracture::Crack>& cracks() const { return cracks_; }
   /// One per crack that still runs.
   [[nodiscard]] const std::vector<fracture::LocalObject>& local_objects() const { return local_; }
   [[nodiscard]] const std::vector<AdvanceRecord>& advances() const { return advances_; }
   /// Per node, copies too: a support gives some component of its displacement.
-  [[nodiscard]] const std::vector<std::uint8_t>& supported() const { return supported_; }
-  [[nodiscard]] int pieces() const { return static_cast<int>(pieces_.count()); }
-  [[nodiscard]] double mean_edge() const { return surroundings_.mean_edge(); }  ///< m, of the intact body
-  [[nodiscard]] double crack_area() const;                                      ///< m^2
-  [[nodiscard]] double stored_energy();                                         ///< J: Response::stored_energy now
+  [[nodiscard]] const std::vector<std::uint8_t>& supported() const { return torn_.supported(); }
+  [[nodiscard]] int pieces() const { return static_cast<int>(torn_.pieces()); }
+  [[nodiscard]] double mean_edge() const { return torn_.mean_edge(); }  ///< m, of the intact body
+  [[nodiscard]] double crack_area() const;                              ///< m^2
+  [[nodiscard]] double stored_energy();                                 ///< J: Response::stored_energy now
   [[nodiscard]] std::size_t memory_bytes() const { return response_->memory_bytes(); }
   /// Of every node, m; zero out of the solve.
   void displacement(VectorX& u);
@@ -102,8 +100,6 @@ class TearSession {
   bool take(Change change, TickReport& report, const Observer& observer);
 
   Expected<void> open(const CrackLine& line);
-  /// The body takes the edit, with the pieces that it leaves without support frozen.
-  void apply(mesh::MeshEdit edit);
   /// The body gives its last edit back, with the cracks as they were; the response is not told.
   mesh::MeshEdit take_back(const std::vector<fracture::Crack>& cracks);
   void follow_nodes();
@@ -111,17 +107,12 @@ class TearSession {
   void solve_local_objects();
   [[nodiscard]] std::vector<fracture::TetStress> surface_stresses(const VectorX& u) const;
   [[nodiscard]] double radius_of(std::size_t crack) const;
-  [[nodiscard]] fracture::IncisionSettings incision_settings() const;
   [[nodiscard]] std::vector<response::Focus> foci() const;
 
   TearSettings settings_;
-  mesh::TornMesh body_;
-  fracture::Surroundings surroundings_;
+  fracture::TornBody torn_;
   std::unique_ptr<fracture::Criterion> criterion_;
   std::unique_ptr<response::Response> response_;  ///< made when the first cracks are cut
-  double smallest_radius_ratio_ = 0.0;            ///< of the intact body
-  std::vector<std::uint8_t> held_;                ///< 3 per node, copies too: a support gives this component
-  std::vector<std::uint8_t> supported_;           ///< per node: it gives some component
   Vec3 body_force_ = Vec3::Zero();                ///< N/m^3
   std::vector<Vec3> node_force_;                  ///< N, per node; empty without such loads
 
@@ -134,7 +125,6 @@ class TearSession {
   std::vector<TetId> surface_tets_;                          ///< while no crack runs: where one may start
   response::ForceBasis surface_basis_;                       ///< of every node, then
   std::vector<AdvanceRecord> advances_;
-  fracture::Pieces pieces_;
   Hand hand_;
   Vec3 hand_at_ = Vec3::Zero();  ///< m, as of the last tick
   /// One after the other the cracks are judged at a place of the hand, round by round until none has torn in a round.

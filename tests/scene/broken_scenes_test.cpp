@@ -285,6 +285,19 @@ TEST(BrokenScene, LongNamesAreCut) {
   EXPECT_EQ(line.find('\n'), std::string::npos);
 }
 
+TEST(BrokenScene, LengthsOfARecordAscend) {
+  const auto said = [](const std::string& lengths) {
+    const std::string message = message_of(spoil("", "[record]\nlengths = " + lengths + "\n"));
+    const std::size_t what = message.find("'record.lengths");
+    return what == std::string::npos ? message : message.substr(what);
+  };
+  EXPECT_EQ(said("[0.02, 0.03]"), "good");
+  EXPECT_EQ(said("[0.03, 0.02]"), "'record.lengths' do not ascend (each longer than the one before)");
+  EXPECT_EQ(said("[0.02, 0.02]"), "'record.lengths' do not ascend (each longer than the one before)");
+  EXPECT_EQ(said("[]"), "'record.lengths' is empty (one length at least)");
+  EXPECT_EQ(said("[0.0]"), "'record.lengths.0' is 0 (give a list of numbers in m, each 1e-09 to 1000000)");
+}
+
 TEST(BrokenScene, HostileNestingIsRefused) {
   std::string dotted = "a";
   for (int i = 0; i < 200000; ++i) dotted += ".a";
@@ -298,7 +311,7 @@ TEST(BrokenScene, HostileNestingIsRefused) {
   for (int i = 0; i < 1999; ++i) most += ".1a.1";
   EXPECT_EQ(message_of(most + " = 1"),
             "s.toml:1: unknown section '1' (known: mesh, sets, material, model, support, traction, pressure, solver, "
-            "fracture, crack, interaction, pull)");
+            "fracture, crack, record, interaction, pull)");
 }
 
 TEST(BrokenScene, SizeIsBounded) {

@@ -293,5 +293,25 @@ TEST(GoodScene, WhatIsGivenInVainIsSaid) {
           "folder/s.toml: 'mass-spring' has a Poisson's ratio of 1/4, not 0.45: springs on the edges have no other"));
 }
 
+TEST(GoodScene, TheRecordIsThatOfTheThesisUnlessItSaysOtherwise) {
+  const Scene thesis = *parse_scene(kGood, "s.toml");
+  EXPECT_TRUE(thesis.record.parameters == record::store::Parameters{});
+  EXPECT_FALSE(thesis.record.single_precision);
+  const Scene scene = *parse_scene(kGood + R"([record]
+advances = 3
+directions = 25
+lengths = [0.02, 3e-2]
+pull_directions = 72
+pull_length = 0.1
+precision = "single"
+)",
+                                   "s.toml");
+  EXPECT_TRUE(
+      (scene.record.parameters ==
+       record::store::Parameters{
+           .advances = 3, .directions = 25, .lengths = {0.02, 0.03}, .pull_directions = 72, .pull_length = 0.1}));
+  EXPECT_TRUE(scene.record.single_precision);
+}
+
 }  // namespace
 }  // namespace rhexis::scene::test
