@@ -158,7 +158,7 @@ TEST(Campaign, OnThePlateOfTheThesisSinglePrecisionIsEnoughToShowTheBody) {
   EXPECT_LT(worst, 1e-4);
 }
 
-/// 0 degrees and then 180 goes back where all is cut: an advance may open nothing.
+/// A crack that has left the body runs no further.
 TEST(Campaign, SaysWhatOpenedNothing) {
   const fs::path file = fresh_folder("campaign") / "plate.h5";
   CampaignRequest request = test::plate(200, false);
