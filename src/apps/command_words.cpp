@@ -1,7 +1,6 @@
 #include "apps/command_words.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <string_view>
 #include <vector>
@@ -12,9 +11,6 @@
 
 namespace rhexis::apps {
 namespace {
-
-/// Commands that are decided on and come with later versions; who has read of them shall not look for a slip.
-constexpr std::array<std::string_view, 1> kLaterCommands{"precompute"};
 
 std::vector<std::string> command_names(const CLI::App& level) {
   std::vector<std::string> names;
@@ -69,12 +65,8 @@ CommandWords read_command_words(const CLI::App& app, int argc, char** argv) {
     }
     const std::vector<std::string> names = command_names(*level);
     if (names.empty()) continue;  // an argument of the command
-    if (std::find(names.begin(), names.end(), word) == names.end()) {
-      const bool later =
-          level == &app && std::find(kLaterCommands.begin(), kLaterCommands.end(), word) != kLaterCommands.end();
-      if (later) return {command, fmt::format("'{}' is not in this version (see `{} --help`)", word, command)};
+    if (std::find(names.begin(), names.end(), word) == names.end())
       return {command, fmt::format("unknown command '{}' ({})", word, remedy(word, names, command))};
-    }
     level = level->get_subcommand(word);
     command += " " + word;
   }
