@@ -8,6 +8,7 @@
 #include "apps/command.h"
 #include "apps/interrupt.h"
 #include "apps/progress.h"
+#include "studies/live_models.h"
 #include "studies/live_study.h"
 #include "studies/reaction_error.h"
 #include "studies/restructuring.h"
@@ -184,13 +185,37 @@ void add_live(CLI::App& study, const Common& common, int& code) {
   command->callback([one, &common, &code] { code = run(*one, common); });
 }
 
+void add_live_models(CLI::App& study, const Common& common, int& code) {
+  CLI::App* command = study.add_subcommand("live-models", "How a body of each model keeps up with a hand");
+  command->footer("Example: rhexis study live-models --nodes 2100 --model hyperelastic --speed 0.05");
+  auto one = std::make_shared<StudyRun>();
+  one->name = "live-models";
+  one->shown = {"tets", "model",      "speed_mm_s", "frames_per_s", "frame_ms",  "frame_ms_most",
+                "late", "iterations", "residual",   "error_mean",   "error_most"};
+  auto options = std::make_shared<studies::LiveModelsOptions>();
+  command->add_option("--out", one->out, "folder for the table and figure; out/live-models unless given");
+  command->add_option("--nodes", options->nodes, "of the bodies")->type_name("COUNT")->expected(-1);
+  command->add_option("--model", options->models, "corotated, geometrically-nonlinear, hyperelastic")
+      ->type_name("NAME")
+      ->expected(-1);
+  command->add_option("--speed", options->speeds, "of the hand")->type_name("M/S")->expected(-1);
+  command->add_option("--seconds", options->seconds, "of each motion")->type_name("SECONDS");
+  command->add_option("--samples", options->samples, "instants at which the converged force is computed")
+      ->type_name("COUNT");
+  command->add_option("--corrections", options->corrections, "Newton corrections a frame")->type_name("COUNT");
+  one->run = [options](const studies::StudyFolder& folder, const studies::Progress& progress) {
+    return studies::run_live_models(*options, folder, progress);
+  };
+  command->callback([one, &common, &code] { code = run(*one, common); });
+}
+
 }  // namespace
 
 void add_study(CLI::App& app, const Common& common, int& code) {
   CLI::App* study = app.add_subcommand("study", "The experiments of the papers, into tables and figures");
   study->footer("Example: rhexis study restructuring --out out/restructuring");
   study->require_subcommand(1);
-  for (const auto add : {add_restructuring, add_reaction_error, add_haptic_stability, add_live})
+  for (const auto add : {add_restructuring, add_reaction_error, add_haptic_stability, add_live, add_live_models})
     add(*study, common, code);
 }
 
