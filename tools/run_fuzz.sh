@@ -6,7 +6,7 @@
 # Targets are built by: cmake --preset fuzz && cmake --build --preset fuzz
 # What is found, and the grown corpus, goes to build/fuzz/found/TARGET; the seeds in fuzz/corpus stay as they are.
 set -u
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/.." || exit 2
 ASAN_SYMBOLIZER_PATH=${ASAN_SYMBOLIZER_PATH:-$(command -v llvm-symbolizer-16 llvm-symbolizer | head -1)}
 if [ -z "$ASAN_SYMBOLIZER_PATH" ]; then  # stacks without names say nothing of who is to blame
   echo "run_fuzz: no llvm-symbolizer-16 (tools/install test)" >&2
@@ -61,7 +61,7 @@ run_one() {
 # HDF5 asks for absurd sizes and copes when it does not get them, and loses memory of its own when it refuses a file. It
 # also crashes on hostile files, of which a search always finds more. So the search goes on, each crash is judged
 # afterwards, and only one that is surely ours makes the target fail; the rest is counted and listed.
-reads_hdf5() { [ "$1" = vtkhdf ] || [ "$1" = recording ]; }
+reads_hdf5() { [[ $1 =~ ^(vtkhdf|recording|record)$ ]]; }
 export of_hdf5='-detect_leaks=0 -malloc_limit_mb=1000000'
 export asan_of_hdf5=allocator_may_return_null=1:detect_leaks=0
 
@@ -77,10 +77,16 @@ judge() {
 }
 
 judge_run() {
-  local log=$2.log
-  if ASAN_OPTIONS=$3 "$1" $of_hdf5 -timeout=10 -rss_limit_mb=2048 "$2" >"$log" 2>&1; then
+  local program=$1 input=$2 asan=$3 log=$2.log
+  local run=("$program" $of_hdf5 -timeout=10 -rss_limit_mb=2048 "$input")
+  if ASAN_OPTIONS=$asan "${run[@]}" >"$log" 2>&1; then
     echo harmless
     return
+  fi
+  # What libFuzzer shows of a run out of memory is what lies on the heap, not who asked for too much.
+  if grep -q 'libFuzzer: out-of-memory' "$log" &&
+    ! ASAN_OPTIONS=$asan:allocator_may_return_null=0:max_allocation_size_mb=2048 "${run[@]}" >"$log.asked" 2>&1; then
+    log+=.asked
   fi
   tools/whose_crash.sh "$log"
 }

@@ -9,6 +9,7 @@ import unittest
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "tools" / "whose_crash.sh"
 
 MEMCPY = "__interceptor_memcpy (/r/build/fuzz/bin/fuzz_vtkhdf+0xd96d0) (BuildId: 77)"
+MEMCMP = "MemcmpInterceptorCommon(void*, int (*)(void const*, void const*, unsigned long)) (/r/build/fuzz/bin/fuzz_vtkhdf+0x1)"
 HDF5 = "H5O__attr_exists (/lib/x86_64-linux-gnu/libhdf5_serial.so.103+0x19518c) (BuildId: e9)"
 HDF5_NAMELESS = " (/lib/x86_64-linux-gnu/libhdf5_serial.so.103+0x190f18) (BuildId: e9)"
 OURS = "rhexis::mesh::io::Hdf5Input::has(long, char const*) const /r/build/fuzz/../../src/mesh/io/hdf5_input.cpp:68:7"
@@ -32,7 +33,7 @@ def whose(report):
 
 class WhoseCrash(unittest.TestCase):
     def test_inside_hdf5_whoever_called_it(self):
-        for inner in ([], [MEMCPY], ["__sanitizer_print_stack_trace (/r/bin/fuzz+0x1)", DRIVER, "<null> (/libc.so.6+0x1)"]):
+        for inner in ([], [MEMCPY], [MEMCMP], ["__sanitizer_print_stack_trace (/r/bin/fuzz+0x1)", DRIVER, "<null> (/libc.so.6+0x1)"]):
             for hdf5 in (HDF5, HDF5_NAMELESS):
                 self.assertEqual(whose(stack(*inner, hdf5, OURS, TARGET, DRIVER)), "hdf5")
 
@@ -55,6 +56,8 @@ class WhoseCrash(unittest.TestCase):
     def test_without_a_stack_it_is_unclear(self):
         self.assertEqual(whose(""), "unclear")
         self.assertEqual(whose(stack(TERMINATE, DRIVER)), "unclear")
+        heap = stack("operator new(unsigned long) (/r/build/fuzz/bin/fuzz_vtkhdf+0x19259d)", DRIVER, "main (/r/bin+0x1)")
+        self.assertEqual(whose("Live Heap Allocations:\n" + heap + "\n" + heap), "unclear")
 
 
 if __name__ == "__main__":
