@@ -159,6 +159,11 @@ Expected<void> check(const LiveModelsOptions& options) {
 Expected<ordered_json> run_live_models(const LiveModelsOptions& options, const StudyFolder& folder,
                                        const Progress& progress) {
   if (Expected<void> fine = check(options); !fine) return fail(fine.error());
+  folder.note(
+      "A soft rod, held below, is led by a hand on a circle; every frame corrects the last state by Newton corrections "
+      "that are not solved to the end. Errors are those of the force that the haptic loop gives between frames, "
+      "against "
+      "the converged one of the same instant, relative to the largest of the motion.");
   ordered_json rows = ordered_json::array();
   double all = 0.0;
   for (const int nodes : options.nodes) all += nodes;
