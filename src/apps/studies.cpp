@@ -124,6 +124,8 @@ StudyFunction live_models_options(CLI::App& command) {
   command.add_option("--samples", options->samples, "instants at which the converged force is computed")
       ->type_name("COUNT");
   command.add_option("--corrections", options->corrections, "Newton corrections a frame")->type_name("COUNT");
+  command.add_option("--frame", options->frame, "that every frame counts as; as long as it takes unless given")
+      ->type_name("SECONDS");
   return runs_with(options, studies::run_live_models);
 }
 

@@ -106,7 +106,7 @@ ordered_json one_row(const Rod& rod, double speed, const LiveModelsOptions& opti
     residual.push_back(frame.residual);
     iterations += frame.linear_iterations;
     late += frame.reached ? 0 : 1;
-    now += std::max(seconds, kFramePeriod);
+    now += options.frame > 0.0 ? options.frame : std::max(seconds, kFramePeriod);
     if (now < next_sample) continue;
     // The frame is over, and the hand has moved on: what the haptic loop says to that.
     next_sample += options.seconds / options.samples;
@@ -148,6 +148,8 @@ Expected<void> check(const LiveModelsOptions& options) {
   for (const double speed : options.speeds) {
     if (!(speed > 0.0) || !std::isfinite(speed)) return fail(fmt::format("a speed of {} m/s", speed), "more than 0");
   }
+  if (!(options.frame >= 0.0) || !std::isfinite(options.frame))
+    return fail(fmt::format("a frame of {} s", options.frame), "0 or more");
   if (!(options.seconds > 0.0) || !std::isfinite(options.seconds) || options.samples < 1 || options.corrections < 1)
     return fail("a motion of no time, without a sample or without a correction", "more than 0 of each");
   if (options.nodes.empty() || options.models.empty() || options.speeds.empty()) return fail("nothing to do", "");

@@ -21,6 +21,7 @@ struct LiveModelsOptions {
   double seconds = 2.0;                         ///< of each motion
   int samples = 6;                              ///< instants of each at which the converged force is computed
   int corrections = 1;                          ///< of a frame
+  double frame = 0.0;  ///< s, that every frame counts as; 0: as long as it takes, kFramePeriod at least
 };
 
 /// A frame never begins sooner after the one before.
