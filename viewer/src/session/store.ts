@@ -22,6 +22,8 @@ export class Store {
   timeline: Timeline | null = null;
   readonly surface = new Surface();
   readonly trace = new ForceTrace();
+  /** Of the other response, while it is compared. */
+  readonly compared = new ForceTrace();
   advances: Advance[] = [];
   recordings: Recorded[] = [];
   /** Frames taken, refused ones too. */
@@ -87,6 +89,8 @@ export class Store {
   private takeState(state: State): Change {
     if (!this.surface.applyState(state)) return "none";
     this.trace.add(state.traceTick, state.trace);
+    if (state.comparedForce !== null) this.compared.holdTo(state.tick, state.comparedForce);
+    else if (this.state?.comparedForce) this.compared.clear();
     this.state = state;
     return "state";
   }
