@@ -159,7 +159,7 @@ export class App implements Listener {
     const mayAct = this.link.kind === "open" && store.hasHand;
     this.force.show(store.state);
     this.comparison.show(store.body, store.state, mayAct, store.hello?.replay ?? false);
-    this.plot.show(store.trace, store.compared, store.advances.map((advance) => advance.time), store.body?.maxForce ?? 0);
+    this.plot.show(store.trace, store.own, store.compared, store.advances.map((advance) => advance.time), store.body?.maxForce ?? 0);
     this.loops.show(store.state?.rates ?? null, this.socket.roundTrip);
     this.advances.show(store.advances);
     this.transport.show(store.state, mayAct, (store.body?.script ?? 0) > 0);

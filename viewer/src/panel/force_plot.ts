@@ -51,7 +51,8 @@ export class ForcePlot {
     new ResizeObserver(() => this.plot.setSize({ width: Math.max(200, frame.clientWidth), height: kHeight })).observe(frame);
   }
 
-  show(trace: ForceTrace, compared: ForceTrace, advances: readonly number[], limit: number, force = false): void {
+  /** `own` is drawn in the place of the length of `trace` where it is known: as little cut as `compared`. */
+  show(trace: ForceTrace, own: ForceTrace, compared: ForceTrace, advances: readonly number[], limit: number, force = false): void {
     const now = performance.now();
     if (!force && (now - this.drawnAt < kEvery || this.frame.clientWidth === 0)) return;
     this.drawnAt = now;
@@ -61,7 +62,9 @@ export class ForcePlot {
     const end = trace.time;
     // uPlot leaves a gap for null, and takes NaN for a number.
     const gaps = (column: Float64Array) => Array.from(column, (value) => (Number.isNaN(value) ? null : value));
-    const data = [Array.from(columns.time), ...columns.along.map(gaps), gaps(columns.size), gaps(compared.columns(kPoints, trace.endTick).size)] as uPlot.AlignedData;
+    const at = (other: ForceTrace) => other.columns(kPoints, trace.endTick).size;
+    const size = at(own).map((value, k) => (Number.isNaN(value) ? (columns.size[k] ?? NaN) : value));
+    const data = [Array.from(columns.time), ...columns.along.map(gaps), gaps(size), gaps(at(compared))] as uPlot.AlignedData;
     this.plot.setData(data, false);
     this.plot.batch(() => {
       this.plot.setScale("x", { min: end - kTraceSeconds, max: end });
