@@ -11,19 +11,13 @@
 
 #include <boost/asio/ip/address.hpp>
 
+#include "apps/beside_program.h"
 #include "apps/interrupt.h"
 
 namespace rhexis::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// As `make viewer` lays it beside the program.
-fs::path page_beside_program() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  return program.parent_path().parent_path() / "share/rhexis/page";
-}
 
 /// 128 bits of the system's own randomness, as text.
 std::string new_token() {
@@ -55,7 +49,7 @@ Expected<server::ServerSettings> settings_of(const LiveViewOptions& options) {
   settings.port = static_cast<std::uint16_t>(options.port);
   settings.token = options.token;
   if (settings.token.empty() && !is_loopback(options.address)) settings.token = new_token();
-  settings.page = options.page.empty() ? page_beside_program() : fs::path(options.page);
+  settings.page = options.page.empty() ? share_folder() / "page" : fs::path(options.page);
   settings.recordings = options.recordings;
   std::error_code error;
   fs::create_directories(settings.recordings, error);
