@@ -6,7 +6,7 @@
 
 #include "studies/beta_sweep.h"
 #include "studies/identification.h"
-#include "studies/live_models.h"
+#include "studies/iteration_timing.h"
 #include "studies/live_study.h"
 #include "studies/model_comparison.h"
 #include "studies/reaction_error.h"
@@ -52,6 +52,18 @@ StudyFunction model_comparison_options(CLI::App& command) {
       ->type_name("NAME")
       ->expected(-1);
   return runs_with(options, studies::run_model_comparison);
+}
+
+StudyFunction timing_options(CLI::App& command) {
+  auto options = std::make_shared<studies::TimingOptions>();
+  command.add_option("--nodes", options->nodes, "of the vessels; 401 to 30000 unless given")
+      ->type_name("COUNT")
+      ->expected(-1);
+  command.add_option("--threads", options->threads, "1 and 2 unless given")->type_name("COUNT")->expected(-1);
+  command.add_option("--linear", options->solvers, "direct, cg, minres")->type_name("NAME")->expected(-1);
+  command.add_option("--hand", options->hand, "m/s, the speed of the load where each step is one iteration")
+      ->type_name("M/S");
+  return runs_with(options, studies::run_timing);
 }
 
 StudyFunction restructuring_options(CLI::App& command) {
@@ -113,22 +125,6 @@ StudyFunction live_options(CLI::App& command) {
   return runs_with(options, studies::run_live_study);
 }
 
-StudyFunction live_models_options(CLI::App& command) {
-  auto options = std::make_shared<studies::LiveModelsOptions>();
-  command.add_option("--nodes", options->nodes, "of the bodies")->type_name("COUNT")->expected(-1);
-  command.add_option("--model", options->models, "corotated, geometrically-nonlinear, hyperelastic")
-      ->type_name("NAME")
-      ->expected(-1);
-  command.add_option("--speed", options->speeds, "of the hand")->type_name("M/S")->expected(-1);
-  command.add_option("--seconds", options->seconds, "of each motion")->type_name("SECONDS");
-  command.add_option("--samples", options->samples, "instants at which the converged force is computed")
-      ->type_name("COUNT");
-  command.add_option("--corrections", options->corrections, "Newton corrections a frame")->type_name("COUNT");
-  command.add_option("--frame", options->frame, "that every frame counts as; as long as it takes unless given")
-      ->type_name("SECONDS");
-  return runs_with(options, studies::run_live_models);
-}
-
 }  // namespace
 
 std::span<const Study> all_studies() {
@@ -149,6 +145,12 @@ std::span<const Study> all_studies() {
        "--density 500",
        {"body", "rho", "model", "mean", "max", "mean_x", "mean_y", "mean_z", "load", "volume_ratio", "inverted_tets"},
        model_comparison_options},
+      {"timing",
+       "What a Newton iteration of each model costs, and what one iteration a step is good for",
+       "--nodes 401 3000 --threads 2",
+       {"nodes", "threads", "model", "linear", "outcome", "tangent_ms", "solve_ms", "tangent_ratio", "solve_ratio",
+        "iteration_ratio"},
+       timing_options},
       {"restructuring",
        "What an advance of a crack costs, by five ways",
        "--nodes 506 1270 5000 --mode slow-pull",
@@ -170,12 +172,6 @@ std::span<const Study> all_studies() {
        "--seconds 60 --nodes 5000",
        {"measure", "value", "unit", "note"},
        live_options},
-      {"live-models",
-       "How a body of each model keeps up with a hand",
-       "--nodes 2100 --model hyperelastic --speed 0.05",
-       {"tets", "model", "speed_mm_s", "frames_per_s", "frame_ms", "frame_ms_most", "late", "iterations", "residual",
-        "error_mean", "error_most"},
-       live_models_options},
   };
   return kStudies;
 }

@@ -12,6 +12,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "studies/report.h"
+#include "studies/reproduction.h"
 
 namespace rhexis::apps {
 namespace {
@@ -141,6 +142,23 @@ void add_all(CLI::App& parent, const Common& common, int& code) {
   command->callback([out, &common, &code] { code = run_all(*out, common); });
 }
 
+/// The page of docs/reproduction.md, on stdout.
+void add_reproduction(CLI::App& parent, int& code) {
+  CLI::App* command =
+      parent.add_subcommand("reproduction", "Print every published number beside ours, from what studies wrote");
+  command->footer("Example: rhexis study reproduction out/studies > reproduction.md");
+  auto folder = std::make_shared<std::string>("out/studies");
+  command->add_option("folder", *folder, "of NAME/study.json or NAME.json; out/studies unless given");
+  command->callback([folder, &code] {
+    const Expected<std::string> page = studies::reproduction_markdown(*folder);
+    if (!page) {
+      code = report(page.error());
+      return;
+    }
+    fmt::print("{}", *page);
+  });
+}
+
 }  // namespace
 
 void add_study(CLI::App& app, const Common& common, int& code) {
@@ -149,6 +167,7 @@ void add_study(CLI::App& app, const Common& common, int& code) {
   parent->require_subcommand(1);
   for (const Study& study : all_studies()) add_one(*parent, study, common, code);
   add_all(*parent, common, code);
+  add_reproduction(*parent, code);
 }
 
 }  // namespace rhexis::apps

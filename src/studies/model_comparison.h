@@ -15,9 +15,9 @@
 namespace rhexis::studies {
 
 struct ModelComparisonOptions {
-  int nodes = 401;                             ///< of the vessel
-  std::vector<double> densities{500.0, 5000.0};  ///< kg/m3
-  std::filesystem::path shared = "../shared";    ///< where meshes of organs may lie, in data/
+  int nodes = 401;                                           ///< of the vessel
+  std::vector<double> densities{500.0, 5000.0};              ///< kg/m3
+  std::filesystem::path shared = "../shared";                ///< where meshes of organs may lie, in data/
   std::vector<std::string> organs{"kidney_1k", "liver_1k"};  ///< those that are not there are left out
 };
 

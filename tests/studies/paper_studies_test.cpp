@@ -3,9 +3,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
+#include <Eigen/Geometry>
+
+#include "base/parallel.h"
+
 #include "studies/beta_sweep.h"
 #include "studies/identification.h"
+#include "studies/iteration_timing.h"
 #include "studies/loaded_body.h"
+#include "studies/model_comparison.h"
+#include "studies/real_time_steps.h"
+#include "studies/strain_path.h"
 #include "tests/support/run_command.h"
 #include "tests/support/shared_data.h"
 
@@ -90,6 +100,79 @@ TEST(BetaSweep, StoppedBeforeTheFirstRowItSaysSo) {
   const Expected<ordered_json> rows =
       run_beta_sweep({.nodes = 120}, folder, [](double, std::string_view) { return false; });
   EXPECT_FALSE(rows);
+}
+
+TEST(StrainPath, AStretchedBodyHasTheStrainOfItsStretch) {
+  const LoadedBody body = *make_vessel(120);
+  VectorX u(static_cast<Eigen::Index>(3 * body.mesh.node_count()));
+  const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+  for (std::size_t n = 0; n < body.mesh.node_count(); ++n) {
+    const Vec3& x = body.mesh.nodes[n];
+    u.segment<3>(static_cast<Eigen::Index>(3 * n)) = turn * Vec3(x.x(), x.y(), 1.25 * x.z()) - x;
+  }
+  EXPECT_NEAR(strain_of(body.mesh, u), 0.25, 1e-12);  // whatever it is turned by
+}
+
+TEST(StrainPath, ALimitIsPassedBetweenTwoStepsInProportion) {
+  const std::vector<PathPoint> path{{0.5, 0.1, 2.0}, {1.0, 0.3, 6.0}};
+  const std::optional<PathPoint> at = passes(path, 4.0);
+  ASSERT_TRUE(at);
+  EXPECT_DOUBLE_EQ(at->load, 0.75);
+  EXPECT_DOUBLE_EQ(at->strain, 0.2);
+  EXPECT_DOUBLE_EQ(passes(path, 1.0)->load, 0.25);  // from nothing
+  EXPECT_FALSE(passes(path, 6.0));
+}
+
+TEST(ModelComparison, TheModelsPartAsTheirLawsDo) {
+  const StudyFolder folder = *StudyFolder::open(test::fresh_folder("models"));
+  const Expected<ordered_json> rows =
+      run_model_comparison({.nodes = 120, .densities = {500.0}, .shared = "none"}, folder, kGoesOn);
+  ASSERT_TRUE(rows) << rows.error().message();
+  ASSERT_EQ(rows->size(), 7U);
+  std::map<std::string, ordered_json> by_model;
+  for (const ordered_json& row : *rows) by_model[row["model"]] = row;
+  EXPECT_EQ(by_model["hyperelastic"]["max"], 0.0);
+  EXPECT_GT(by_model["linear"]["mean"], by_model["corotated"]["mean"]);
+  EXPECT_LT(by_model["hyperelastic, auto"]["mean"], by_model["corotated"]["mean"]);
+  for (const auto& [name, row] : by_model) {
+    EXPECT_TRUE(row["converged"]) << name;
+    EXPECT_GE(row["max"], row["mean"]);
+  }
+  EXPECT_EQ(folder.contents().published.size(),
+            16U);  // three models by five measures, volume; one density has no trend
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "models-departure.csv"));
+}
+
+TEST(RealTimeSteps, AHandThatHardlyMovesStaysAtEquilibrium) {
+  const LoadedBody body = *make_vessel(120, 0.1, 0.1);
+  const RealTimeSteps run =
+      step_in_real_time(body, paper_material(model::ModelKind::corotated), "direct", 0.004 / 1.0);  // m/s
+  EXPECT_TRUE(run.held);
+  EXPECT_GT(run.steps, 10);
+  EXPECT_LT(run.largest_mm, 0.02);  // of a way of 4 mm
+}
+
+TEST(Timing, TimesEveryModelAndSaysWhatIsLeftOut) {
+  const StudyFolder folder = *StudyFolder::open(test::fresh_folder("timing"));
+  const int threads = thread_count();
+  const Expected<ordered_json> rows = run_timing({.nodes = {120}, .threads = {1}}, folder, kGoesOn);
+  ASSERT_TRUE(rows) << rows.error().message();
+  EXPECT_EQ(thread_count(), threads);
+  ASSERT_EQ(rows->size(), 18U);
+  for (const ordered_json& row : *rows) {
+    if (row["outcome"] != "converged") {
+      EXPECT_TRUE(row["iteration_ms"].is_null());
+      continue;
+    }
+    EXPECT_GT(row["solve_ms"], 0.0);
+    if (row["model"] == "corotated" && row["linear"] == "direct") {
+      EXPECT_EQ(row["tangent_ratio"], 1.0);
+      EXPECT_EQ(row["iteration_ratio"], 1.0);
+    }
+  }
+  EXPECT_EQ(folder.contents().published.size(), 10U);
+  EXPECT_FALSE(run_timing({.solvers = {"qr"}}, folder, kGoesOn));
+  EXPECT_FALSE(run_timing({.threads = {0}}, folder, kGoesOn));
 }
 
 }  // namespace
