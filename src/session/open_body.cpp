@@ -30,14 +30,13 @@ std::uint64_t fingerprint_of(const scene::TearProblem& problem) {
   return hash.value();
 }
 
-Expected<std::unique_ptr<OpenBody>> start_body(SceneChoice scene, scene::TearProblem problem, std::string model) {
+Expected<std::unique_ptr<OpenBody>> start_body(SceneChoice scene, scene::TearProblem problem) {
   Expected<TearStart> start = start_tear(problem);
   if (!start) return fail(std::move(start.error()));
   SurfaceTracker surface(start->tear->body());
   const std::uint64_t intact = fingerprint_of(problem);
   auto body = std::make_unique<OpenBody>(OpenBody{.scene = std::move(scene),
                                                   .problem = std::move(problem),
-                                                  .model = std::move(model),
                                                   .start = std::move(*start),
                                                   .surface = std::move(surface)});
   const TearSession& tear = body->tear();
@@ -76,13 +75,10 @@ Expected<std::unique_ptr<OpenBody>> open_body(SceneChoice choice) {
   Expected<scene::TearProblem> problem = scene::build_tear_problem(*scene, scene::Puller::hand);
   if (!problem) return fail(std::move(problem.error()));
   set_thread_count(scene->solver.threads);
-  return start_body(std::move(choice), std::move(*problem),
-                    std::string(model::kModelNames[static_cast<std::size_t>(scene->model.kind)]));
+  return start_body(std::move(choice), std::move(*problem));
 }
 
-Expected<std::unique_ptr<OpenBody>> reopen(const OpenBody& body) {
-  return start_body(body.scene, body.problem, body.model);
-}
+Expected<std::unique_ptr<OpenBody>> reopen(const OpenBody& body) { return start_body(body.scene, body.problem); }
 
 std::uint64_t chained(std::uint64_t fingerprint, const mesh::MeshEdit& edit, bool taken_back) {
   Hash hash;
