@@ -3,15 +3,17 @@
 #include <spawn.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <random>
 #include <thread>
 
 #include <boost/asio/ip/address.hpp>
 
 #include "apps/interrupt.h"
+#include "server/gate.h"
 
 namespace rhexis::apps {
 namespace {
@@ -25,12 +27,11 @@ fs::path page_beside_program() {
   return program.parent_path().parent_path() / "share/rhexis/page";
 }
 
-/// 128 bits of the system's own randomness, as text.
-std::string new_token() {
-  std::random_device random;
-  std::string out;
-  for (int word = 0; word < 4; ++word) out += fmt::format("{:08x}", random());
-  return out;
+/// It stands in an address and in a cookie, and is quoted in neither.
+bool is_plain(const std::string& token) {
+  return std::all_of(token.begin(), token.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '.' || c == '_' || c == '~';
+  });
 }
 
 bool is_loopback(const std::string& address) {
@@ -54,14 +55,16 @@ Expected<server::ServerSettings> settings_of(const LiveViewOptions& options) {
   settings.address = options.address;
   settings.port = static_cast<std::uint16_t>(options.port);
   settings.token = options.token;
-  if (settings.token.empty() && !is_loopback(options.address)) settings.token = new_token();
+  if (!is_plain(options.token))
+    return fail("the token has characters that an address cannot have as they are",
+                "letters, digits and any of - . _ ~", "--token");
+  if (settings.token.empty() && !is_loopback(options.address)) settings.token = server::make_token();
   settings.page = options.page.empty() ? page_beside_program() : fs::path(options.page);
   settings.recordings = options.recordings;
   std::error_code error;
   fs::create_directories(settings.recordings, error);
   if (error)
-    return fail(fmt::format("cannot make the folder {}: {}", options.recordings, error.message()),
-                "--recordings names another");
+    return fail("cannot make the folder: " + error.message(), "--recordings names another", options.recordings);
   return settings;
 }
 
