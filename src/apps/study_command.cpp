@@ -9,6 +9,7 @@
 #include "apps/interrupt.h"
 #include "apps/progress.h"
 #include "studies/live_study.h"
+#include "studies/reaction_error.h"
 #include "studies/restructuring.h"
 #include "studies/stability_map.h"
 
@@ -107,6 +108,30 @@ void add_restructuring(CLI::App& study, const Common& common, int& code) {
   command->callback([one, &common, &code] { code = run(*one, common); });
 }
 
+void add_reaction_error(CLI::App& study, const Common& common, int& code) {
+  CLI::App* command = study.add_subcommand("reaction-error", "How far recorded forces are from the exact ones");
+  command->footer("Example: rhexis study reaction-error --advances 1 --step 5");
+  auto one = std::make_shared<StudyRun>();
+  one->name = "reaction-error";
+  one->shown = {"advances",  "way",           "patterns",      "better",      "better_untied",   "mean",
+                "deviation", "mean_relative", "thesis_better", "thesis_mean", "thesis_deviation"};
+  auto options = std::make_shared<studies::ReactionErrorOptions>();
+  command->add_option("--out", one->out, "folder for the tables and figures; out/reaction-error unless given");
+  command->add_option("--nodes", options->nodes, "of the plate")->type_name("COUNT");
+  command->add_option("--advances", options->advances, "1: Table 5.9 of the thesis, 2: Table 5.10")
+      ->type_name("COUNT")
+      ->expected(-1);
+  command->add_option("--spacing", options->spacing, "between recorded cracks")->type_name("DEGREES");
+  command->add_option("--spacings", options->spacings, "that are compared, at one advance")
+      ->type_name("DEGREES")
+      ->expected(-1);
+  command->add_option("--step", options->step, "between the cracks that are asked for")->type_name("DEGREES");
+  one->run = [options](const studies::StudyFolder& folder, const studies::Progress& progress) {
+    return studies::run_reaction_error(*options, folder, progress);
+  };
+  command->callback([one, &common, &code] { code = run(*one, common); });
+}
+
 void add_haptic_stability(CLI::App& study, const Common& common, int& code) {
   CLI::App* command = study.add_subcommand("haptic-stability", "Which couplings an emulated haptic device bears");
   command->footer("Example: rhexis study haptic-stability --delay 0 1 2 --stiffness 500 1000 2000");
@@ -165,7 +190,8 @@ void add_study(CLI::App& app, const Common& common, int& code) {
   CLI::App* study = app.add_subcommand("study", "The experiments of the papers, into tables and figures");
   study->footer("Example: rhexis study restructuring --out out/restructuring");
   study->require_subcommand(1);
-  for (const auto add : {add_restructuring, add_haptic_stability, add_live}) add(*study, common, code);
+  for (const auto add : {add_restructuring, add_reaction_error, add_haptic_stability, add_live})
+    add(*study, common, code);
 }
 
 }  // namespace rhexis::apps

@@ -84,12 +84,8 @@ FactoredState Campaign::follow(const FactoredState& before, int number) const {
   const store::Parameters& parameters = head_.parameters;
   const store::Choice last = store::Numbering(parameters).choices(number).back();
   const double angle = store::direction_angles(parameters)[static_cast<std::size_t>(last.direction)];
-  FactoredState next = before;
-  next.torn.advance(head_.frame.direction(angle), parameters.lengths[static_cast<std::size_t>(last.length)]);
-  if (recorder_->factor(next)) return next;
-  next = before;
-  next.torn.flags = static_cast<std::uint8_t>(store::unstable | (before.torn.flags & store::came_through));
-  return next;
+  return recorder_->advanced(before, head_.frame.direction(angle),
+                             parameters.lengths[static_cast<std::size_t>(last.length)]);
 }
 
 Expected<CampaignReport> Campaign::run(const std::filesystem::path& file, Rank rank, const Observer& observe) const {

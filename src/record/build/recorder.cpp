@@ -143,16 +143,40 @@ Mat3 Recorder::compliance(const std::vector<double>& inverse, std::int32_t a, st
   return out;
 }
 
+FactoredState Recorder::advanced(const FactoredState& before, const Vec3& direction, double length) const {
+  FactoredState next = before;
+  next.torn.advance(direction, length);
+  if (factor(next)) return next;
+  next = before;
+  next.torn.flags = static_cast<std::uint8_t>(store::unstable | (before.torn.flags & store::came_through));
+  return next;
+}
+
+std::vector<Mat3> Recorder::stiffnesses(const mesh::TornMesh& body, const std::vector<double>& inverse) const {
+  std::vector<Mat3> out;
+  out.reserve(points_.size());
+  for (const std::int32_t node : points_) {
+    if (!body.is_solved(NodeId(node))) {
+      out.emplace_back(Mat3::Zero());
+      continue;
+    }
+    const Mat3 k = compliance(inverse, node, node).inverse();
+    out.emplace_back(0.5 * (k + k.transpose()));
+  }
+  return out;
+}
+
+std::vector<Mat3> Recorder::stiffnesses(const FactoredState& state) const {
+  return stiffnesses(state.torn.body.mesh(), state.factor.selected_inverse());
+}
+
 store::TopologyData Recorder::record(const FactoredState& state) const {
   const mesh::TornMesh& body = state.torn.body.mesh();
   const std::vector<double> inverse = state.factor.selected_inverse();
   store::TopologyData out;
   out.flags = state.torn.flags;
-  for (const std::int32_t node : points_) {
-    const bool in_solve = body.is_solved(NodeId(node));
-    const Mat3 k = in_solve ? Mat3(compliance(inverse, node, node).inverse()) : Mat3(Mat3::Zero());
-    out.in_solve.push_back(in_solve ? 1 : 0);
-    const Mat3 s = 0.5 * (k + k.transpose());
+  for (const std::int32_t node : points_) out.in_solve.push_back(body.is_solved(NodeId(node)) ? 1 : 0);
+  for (const Mat3& s : stiffnesses(body, inverse)) {
     out.stiffness.insert(out.stiffness.end(), {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)});
   }
   for (const auto& [a, b] : edges_) {

@@ -31,16 +31,23 @@ class Recorder {
   void describe(store::RecordHead& head) const;
   [[nodiscard]] const std::vector<std::int32_t>& points() const { return points_; }
   [[nodiscard]] const OperatorLayout& layout() const { return *layout_; }
+  [[nodiscard]] const response::ElasticModel& model() const { return model_; }
 
   /// Factors what has changed. False: the body has a free motion, and the state is of no more use.
   [[nodiscard]] bool factor(FactoredState& state) const;
+  /// After one more advance along `direction` (unit) by `length` (m), factored. An advance that would leave a part that
+  /// can move freely is not made, and the flag says so.
+  [[nodiscard]] FactoredState advanced(const FactoredState& before, const Vec3& direction, double length) const;
   [[nodiscard]] store::TopologyData record(const FactoredState& state) const;
+  /// (L_ii)^-1 of every grasp point, N/m; zero out of the solve.
+  [[nodiscard]] std::vector<Mat3> stiffnesses(const FactoredState& state) const;
 
  private:
   [[nodiscard]] std::vector<double> stiffness_of(const mesh::TornMesh& body) const;
   [[nodiscard]] std::vector<double> rest_of(const FactoredState& state) const;
   /// L_ij between two nodes, from the selected inverse.
   [[nodiscard]] Mat3 compliance(const std::vector<double>& inverse, std::int32_t a, std::int32_t b) const;
+  [[nodiscard]] std::vector<Mat3> stiffnesses(const mesh::TornMesh& body, const std::vector<double>& inverse) const;
 
   mesh::TetMesh mesh_;
   response::ElasticModel model_;
