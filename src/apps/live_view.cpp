@@ -3,28 +3,29 @@
 #include <spawn.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <random>
 #include <thread>
 
 #include <boost/asio/ip/address.hpp>
 
 #include "apps/beside_program.h"
 #include "apps/interrupt.h"
+#include "server/gate.h"
 
 namespace rhexis::apps {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// 128 bits of the system's own randomness, as text.
-std::string new_token() {
-  std::random_device random;
-  std::string out;
-  for (int word = 0; word < 4; ++word) out += fmt::format("{:08x}", random());
-  return out;
+/// It stands in an address and in a cookie, and is quoted in neither.
+bool is_plain(const std::string& token) {
+  return std::all_of(token.begin(), token.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '.' || c == '_' || c == '~';
+  });
 }
 
 bool is_loopback(const std::string& address) {
@@ -48,14 +49,16 @@ Expected<server::ServerSettings> settings_of(const LiveViewOptions& options) {
   settings.address = options.address;
   settings.port = static_cast<std::uint16_t>(options.port);
   settings.token = options.token;
-  if (settings.token.empty() && !is_loopback(options.address)) settings.token = new_token();
+  if (!is_plain(options.token))
+    return fail("the token has characters that an address cannot have as they are",
+                "letters, digits and any of - . _ ~", "--token");
+  if (settings.token.empty() && !is_loopback(options.address)) settings.token = server::make_token();
   settings.page = options.page.empty() ? share_folder() / "page" : fs::path(options.page);
   settings.recordings = options.recordings;
   std::error_code error;
   fs::create_directories(settings.recordings, error);
   if (error)
-    return fail(fmt::format("cannot make the folder {}: {}", options.recordings, error.message()),
-                "--recordings names another");
+    return fail("cannot make the folder: " + error.message(), "--recordings names another", options.recordings);
   return settings;
 }
 

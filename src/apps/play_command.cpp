@@ -49,17 +49,19 @@ int play(const SceneOptions& scene, const PlayOptions& options, const LiveViewOp
   settings.force_scale = options.force_scale;
   settings.version = RHEXIS_VERSION;
   settings.device = [&](std::shared_ptr<haptics::HandPath> script) {
-    return haptics::make_device(
-        options.device,
-        {.hand = std::move(script), .readings = {}, .emulator = haptics::EmulatorSettings::firmly_held()});
+    return haptics::make_device(options.device,
+                                {.hand = std::move(script), .emulator = haptics::EmulatorSettings::firmly_held()});
   };
   for (const haptics::DeviceTraits& device : haptics::known_devices()) settings.devices.push_back(device.name);
   Relay relay;
   Expected<std::unique_ptr<session::LiveSession>> live = session::LiveSession::open(std::move(settings), relay);
   if (!live) return report(live.error());
-  say(common, "device    {}\n", options.device);
-  return serve(
-      view, common, **live, relay, [&] { return (*live)->start(); }, [&] { (*live)->stop(); });
+  const auto start = [&] {
+    Expected<void> begun = (*live)->start();
+    if (begun) say(common, "device    {}\n", options.device);
+    return begun;
+  };
+  return serve(view, common, **live, relay, start, [&] { (*live)->stop(); });
 }
 
 }  // namespace

@@ -80,9 +80,10 @@ ordered_json make_summary(const Campaign& campaign, const CampaignReport& done, 
 void print_outcome(const ordered_json& summary) {
   if (summary["ending"] == "was there") fmt::print("record          is there already, of this scene\n");
   if (summary["ending"] == "left to another process") fmt::print("record          another process puts it together\n");
-  fmt::print("topologies      {}: {} computed, {} from before\ntime            {:.2f} s\n",
-             summary["topologies"].get<int>(), summary["computed"].get<int>(), summary["resumed"].get<int>(),
-             summary["seconds"].get<double>());
+  if (summary["ending"] != "was there")
+    fmt::print("topologies      {}: {} computed, {} from before\ntime            {:.2f} s\n",
+               summary["topologies"].get<int>(), summary["computed"].get<int>(), summary["resumed"].get<int>(),
+               summary["seconds"].get<double>());
   if (summary["bytes"] > 0)
     fmt::print("file            {}, {:.1f} MB\n", summary["record"].get<std::string>(),
                1e-6 * summary["bytes"].get<double>());

@@ -20,7 +20,9 @@ Expected<void> write_atomically(const fs::path& path, const std::function<Expect
   std::error_code code;
   if (path.has_parent_path()) {
     fs::create_directories(path.parent_path(), code);
-    if (code) return fail("cannot make folder '" + path.parent_path().string() + "': " + code.message());
+    if (code)
+      return fail("cannot make the folder: " + code.message(), "choose a folder that can be written to",
+                  path.parent_path().string());
   }
   const fs::path temporary = path.string() + std::string(kTemporary) + std::to_string(::getpid());
   Expected<void> written = write(temporary);

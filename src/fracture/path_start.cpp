@@ -208,9 +208,9 @@ std::optional<InitialCrack> start_crack(const mesh::TornMesh& body, std::span<co
   return out.cracks.empty() ? std::nullopt : std::optional(out);
 }
 
-Expected<FirstCut> cut_initial(const mesh::TornMesh& body, const Vec3& from, const Vec3& to, const Vec3& through,
-                               const Surroundings& surroundings, const IncisionSettings& settings) {
-  Expected<InitialCrack> start = make_crack(from, to, through, surroundings);
+Expected<FirstCut> cut_initial(const mesh::TornMesh& body, const CrackLine& line, const Surroundings& surroundings,
+                               const IncisionSettings& settings) {
+  Expected<InitialCrack> start = make_crack(line.from, line.to, line.through, surroundings);
   if (!start) return fail(std::move(start.error()));
   Incision incision = incise(body, surroundings, start->surface, settings);
   if (incision.edit.empty()) return fail("the crack opens nothing in the mesh", "a longer crack, or a finer mesh");

@@ -37,14 +37,19 @@ struct InitialCrack {
                                                       double strength, const Surroundings& surroundings,
                                                       double larger = 1.0);
 
+/// A straight crack to start with, the scene's [[crack]]: it opens all of the body that lies along `through`.
+struct CrackLine {
+  Vec3 from = Vec3::Zero();      ///< m
+  Vec3 to = Vec3::Zero();        ///< m
+  Vec3 through = Vec3::UnitZ();  ///< of any length
+};
 struct FirstCut {
   InitialCrack start;
   Incision incision;  ///< opens something
 };
 /// make_crack and its incision. Errors: as make_crack; a crack that opens nothing.
-[[nodiscard]] Expected<FirstCut> cut_initial(const mesh::TornMesh& body, const Vec3& from, const Vec3& to,
-                                             const Vec3& through, const Surroundings& surroundings,
-                                             const IncisionSettings& settings);
+[[nodiscard]] Expected<FirstCut> cut_initial(const mesh::TornMesh& body, const CrackLine& line,
+                                             const Surroundings& surroundings, const IncisionSettings& settings);
 /// start_crack and its incision: at its size or, where that opens nothing, at the least of up to four times it that
 /// does. By splitting, a cut of one edge often does not free a single face. Empty as start_crack, or when none opens
 /// anything.

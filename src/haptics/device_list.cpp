@@ -6,14 +6,12 @@
 
 #include "base/nearest_name.h"
 #include "haptics/pointer_device.h"
-#include "haptics/replay_device.h"
 #include "haptics/script_device.h"
 
 namespace rhexis::haptics {
 
 std::vector<DeviceTraits> known_devices() {
-  return {PointerDevice::make_traits(), ScriptDevice::make_traits(), ReplayDevice::make_traits(),
-          EmulatorDevice::make_traits({})};
+  return {PointerDevice::make_traits(), ScriptDevice::make_traits(), EmulatorDevice::make_traits({})};
 }
 
 Expected<std::unique_ptr<Device>> make_device(const std::string& name, DeviceRequest request) {
@@ -22,11 +20,6 @@ Expected<std::unique_ptr<Device>> make_device(const std::string& name, DeviceReq
     return fail(fmt::format("device '{}' has no hand that moves it", name), "a script");
   if (name == EmulatorDevice::kName) return std::make_unique<EmulatorDevice>(request.emulator, std::move(request.hand));
   if (name == ScriptDevice::kName) return std::make_unique<ScriptDevice>(std::move(request.hand));
-  if (name == ReplayDevice::kName) {
-    if (request.readings.empty())
-      return fail("device 'replay' has nothing to play", "`rhexis replay RECORDING` plays a recording");
-    return std::make_unique<ReplayDevice>(std::move(request.readings));
-  }
   std::vector<std::string> names;
   for (const DeviceTraits& traits : known_devices()) names.push_back(traits.name);
   const std::string near = nearest_name(name, names);

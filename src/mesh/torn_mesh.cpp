@@ -33,6 +33,11 @@ TornMesh::TornMesh(TetMesh intact)
   }
 }
 
+bool TornMesh::is_solved(NodeId node) const {
+  const std::span<const TetId> around = tets_around(node);
+  return std::any_of(around.begin(), around.end(), [&](TetId tet) { return is_solved(tet); });
+}
+
 double TornMesh::volume() const {
   double sum = 0.0;
   for (std::size_t tet = 0; tet < mesh_.tet_count(); ++tet) {

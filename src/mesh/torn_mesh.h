@@ -28,6 +28,8 @@ class TornMesh {
   [[nodiscard]] bool is_frozen(TetId tet) const { return frozen_[tet.index()] != 0; }
   /// Has a tet that is alive.
   [[nodiscard]] bool is_alive(NodeId node) const { return !around_[node.index()].empty(); }
+  /// Has a tet that is solved.
+  [[nodiscard]] bool is_solved(NodeId node) const;
   /// The node of the intact mesh that this one is, or is a copy (of a copy ...) of.
   [[nodiscard]] NodeId original(NodeId node) const { return original_[node.index()]; }
   /// Tets around a node that are alive, ascending.

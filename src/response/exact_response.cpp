@@ -86,27 +86,20 @@ FollowReport ExactResponse::follow(const mesh::MeshEdit& edit, std::span<const F
       prepare(focus);
     }
   }
-  report.held = held_in_solve_;
   report.update_seconds = watch.seconds();
   return report;
 }
 
-FollowReport ExactResponse::go_back(const mesh::MeshEdit& edit, std::span<const Focus> focus) {
-  const Stopwatch watch;
-  FollowReport report;
+void ExactResponse::go_back(const mesh::MeshEdit& edit, std::span<const Focus> focus) {
   if (preparation_) {
-    const ScopedTimer timer(report.wait_seconds);
     preparation_->finish();
     preparation_->mirror.undo();
   }
   linalg::ElementChange change;
   change.next = nodes_ahead(mesh_, focus);
   add_taken_back(mesh_, edit, change);
-  report.ok = adopt(tree_->updated(ElasticElements(mesh_, model_), change));
-  RHEXIS_CHECK(report.ok, "the body before the edit was stable");
-  report.held = held_in_solve_;
-  report.update_seconds = watch.seconds();
-  return report;
+  const bool stable = adopt(tree_->updated(ElasticElements(mesh_, model_), change));
+  RHEXIS_CHECK(stable, "the body before the edit was stable");
 }
 
 /// The factor that was made in the background, with the edits since. It is due when the caller has done as many
@@ -152,16 +145,14 @@ bool ExactResponse::adopt(Tree next) {
 /// L_cc = y^T y of the forward solutions L y = e of unit forces, and u_c by the loads = y^T (that of the loads).
 void ExactResponse::solve_held() {
   const auto columns = static_cast<Eigen::Index>(3 * held_.size());
-  held_in_solve_ = true;
   VectorX given = VectorX::Zero(columns);
   std::vector<std::int32_t> dof;
   std::vector<Eigen::Index> column_of;
   for (Eigen::Index column = 0; column < columns; ++column) {
     const NodeId node = held_[static_cast<std::size_t>(column / 3)];
     const auto component = static_cast<std::int32_t>(column % 3);
-    if (!is_in_solve(node)) {
-      held_in_solve_ = false;
-    } else if (model_.held[3 * mesh_.original(node).index() + static_cast<std::size_t>(component)] != 0) {
+    if (!mesh_.is_solved(node)) continue;
+    if (model_.held[3 * mesh_.original(node).index() + static_cast<std::size_t>(component)] != 0) {
       given[column] = prescribed(node)[component];
     } else {
       dof.push_back(3 * node.value() + component);
@@ -173,11 +164,6 @@ void ExactResponse::solve_held() {
   forward_ = tree_->forward(dof, rows);
   compliance_ = forward_.gram;
   rest_ = forward_.with_load + given;
-}
-
-bool ExactResponse::is_in_solve(NodeId node) const {
-  const auto around = mesh_.tets_around(node);
-  return std::any_of(around.begin(), around.end(), [&](TetId tet) { return mesh_.is_solved(tet); });
 }
 
 Vec3 ExactResponse::prescribed(NodeId node) const {
@@ -198,13 +184,13 @@ void ExactResponse::displacement(std::span<const NodeId> nodes, const VectorX& h
   check_forces(held_forces);
   std::vector<std::int32_t> some;
   for (const NodeId node : nodes) {
-    if (is_in_solve(node)) some.push_back(node.value());
+    if (mesh_.is_solved(node)) some.push_back(node.value());
   }
   const bool pushed = is_pushed(held_forces, loads);
   if (pushed) tree_->backward_at(some, {}, &forward_, held_forces, loads, x_);
   out.setZero(static_cast<Eigen::Index>(3 * nodes.size()));
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (!is_in_solve(nodes[i])) continue;
+    if (!mesh_.is_solved(nodes[i])) continue;
     auto u = out.segment<3>(static_cast<Eigen::Index>(3 * i));
     u = loads * prescribed(nodes[i]);  // which the tree leaves at zero
     if (pushed) u += x_.segment<3>(3 * Eigen::Index{nodes[i].value()});
@@ -220,7 +206,7 @@ void ExactResponse::whole_displacement(const VectorX& held_forces, double loads,
   }
   for (std::size_t i = 0; i < mesh_.mesh().node_count() && model_.moves_supports; ++i) {
     const NodeId node(i);
-    if (is_in_solve(node)) out.segment<3>(static_cast<Eigen::Index>(3 * i)) += loads * prescribed(node);
+    if (mesh_.is_solved(node)) out.segment<3>(static_cast<Eigen::Index>(3 * i)) += loads * prescribed(node);
   }
 }
 

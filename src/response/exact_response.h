@@ -42,7 +42,7 @@ class ExactResponse final : public Response {
   /// it anew with the loose pieces frozen.
   FollowReport follow(const mesh::MeshEdit& edit, std::span<const Focus> focus,
                       const CrackAdvance* advance = nullptr) override;
-  FollowReport go_back(const mesh::MeshEdit& edit, std::span<const Focus> focus) override;
+  void go_back(const mesh::MeshEdit& edit, std::span<const Focus> focus) override;
 
   [[nodiscard]] const Eigen::MatrixXd& compliance() const override { return compliance_; }
   [[nodiscard]] const VectorX& rest() const override { return rest_; }
@@ -63,7 +63,6 @@ class ExactResponse final : public Response {
   void solve_held();
   void check_forces(const VectorX& held_forces) const;
   [[nodiscard]] bool is_pushed(const VectorX& held_forces, double loads) const;
-  [[nodiscard]] bool is_in_solve(NodeId node) const;
   [[nodiscard]] Vec3 prescribed(NodeId node) const;
   [[nodiscard]] double potential_energy(const VectorX& held_forces) const;
 
@@ -76,7 +75,6 @@ class ExactResponse final : public Response {
   double energy_at_first_ = 0.0;
 
   std::vector<NodeId> held_;
-  bool held_in_solve_ = true;
   linalg::FrontTree::Forward forward_;  ///< of unit forces on the held nodes
   Eigen::MatrixXd compliance_;
   VectorX rest_;

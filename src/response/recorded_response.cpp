@@ -63,13 +63,11 @@ FollowReport RecordedResponse::follow(const mesh::MeshEdit& edit, std::span<cons
   push(advance);
   look_up();
   FollowReport report;
-  report.held = std::all_of(held_.begin(), held_.end(), [&](NodeId node) { return in_solve_[node.index()] != 0; });
   report.update_seconds = watch.seconds();
   return report;
 }
 
-FollowReport RecordedResponse::go_back(const mesh::MeshEdit& /*edit*/, std::span<const Focus> /*focus*/) {
-  const Stopwatch watch;
+void RecordedResponse::go_back(const mesh::MeshEdit& /*edit*/, std::span<const Focus> /*focus*/) {
   if (counts_.empty()) {
     ++before_first_;
   } else {
@@ -77,10 +75,6 @@ FollowReport RecordedResponse::go_back(const mesh::MeshEdit& /*edit*/, std::span
     counts_.pop_back();
   }
   look_up();
-  FollowReport report;
-  report.held = std::all_of(held_.begin(), held_.end(), [&](NodeId node) { return in_solve_[node.index()] != 0; });
-  report.update_seconds = watch.seconds();
-  return report;
 }
 
 /// All that depends on the topology.

@@ -30,7 +30,7 @@ class RecordedResponse final : public Response {
   void grasp(std::span<const NodeId> nodes) override;
   FollowReport follow(const mesh::MeshEdit& edit, std::span<const Focus> focus,
                       const CrackAdvance* advance = nullptr) override;
-  FollowReport go_back(const mesh::MeshEdit& edit, std::span<const Focus> focus) override;
+  void go_back(const mesh::MeshEdit& edit, std::span<const Focus> focus) override;
 
   [[nodiscard]] const Eigen::MatrixXd& compliance() const override { return compliance_; }
   [[nodiscard]] const VectorX& rest() const override { return rest_; }

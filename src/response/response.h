@@ -46,8 +46,6 @@ struct FollowReport {
   double update_seconds = 0.0;  ///< on the calling thread, all included
   double wait_seconds = 0.0;    ///< of that, waiting for work in the background
   bool refreshed = false;       ///< what was made in the background was taken up
-  bool held = true;  ///< false: a held node has no tet in the solve any more, its rows and columns of the compliance
-                     ///< are zero, and the hand has to let go
 };
 
 class Response {
@@ -61,9 +59,10 @@ class Response {
   virtual FollowReport follow(const mesh::MeshEdit& edit, std::span<const Focus> focus,
                               const CrackAdvance* advance = nullptr) = 0;
   /// After the body has given an edit back.
-  virtual FollowReport go_back(const mesh::MeshEdit& edit, std::span<const Focus> focus) = 0;
+  virtual void go_back(const mesh::MeshEdit& edit, std::span<const Focus> focus) = 0;
 
-  /// L_cc of the held nodes, m/N, 3 per node squared. Rows and columns of a component that a support holds are zero.
+  /// L_cc of the held nodes, m/N, 3 per node squared. Rows and columns of a component that a support holds are zero,
+  /// and so are those of a node that has no tet in the solve any more.
   [[nodiscard]] virtual const Eigen::MatrixXd& compliance() const = 0;
   /// Displacement of the held nodes by the loads alone, m, 3 per node.
   [[nodiscard]] virtual const VectorX& rest() const = 0;

@@ -72,7 +72,8 @@ Expected<Node*> child(Node& holder, const std::string& part, const std::string& 
   if (Array* array = holder.as<Array>()) {
     const auto index = index_of(part);
     if (index && *index < array->size()) return &(*array)[*index];
-    const std::string remedy = array->empty() ? "it is empty" : fmt::format("0 to {}", array->size() - 1);
+    const std::string remedy =
+        array->empty() ? "it is empty" : fmt::format("{}.0 to {}.{}", holder_path, holder_path, array->size() - 1);
     return place.fail(in_quotes(holder_path) + " has no entry " + in_quotes(part), remedy);
   }
   return place.fail(

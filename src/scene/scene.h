@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/vec.h"
+#include "fracture/path_start.h"
 #include "material/parameters.h"
 #include "mesh/generate.h"
 #include "model/make_model.h"
@@ -110,10 +111,8 @@ struct FractureSettings {
   Place place;
 };
 struct CrackSettings {
-  Vec3 from = Vec3::Zero();  ///< m
-  Vec3 to = Vec3::Zero();    ///< m
-  Vec3 through = Vec3::UnitZ();
-  Place place;
+  fracture::CrackLine line;
+  Place place = {};
 };
 struct InteractionSettings {
   std::string response;                         ///< "exact", "recorded"

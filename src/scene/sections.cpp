@@ -158,16 +158,15 @@ Expected<FractureSettings> read_fracture_section(const SectionValues& values, Sc
 }
 
 Expected<CrackSettings> read_crack(const SectionValues& values) {
-  const CrackSettings crack{values.get<Vec3>("from"), values.get<Vec3>("to"), values.get<Vec3>("through"),
-                            values.place};
-  const Vec3 along = crack.to - crack.from;
+  const fracture::CrackLine line{values.get<Vec3>("from"), values.get<Vec3>("to"), values.get<Vec3>("through")};
+  const Vec3 along = line.to - line.from;
   if (along.norm() == 0.0) return values.place_of("to").fail("the crack has no length", "'to' away from 'from'");
   // Below this sine the plane that the two directions span is rounding.
   constexpr double kParallel = 1e-6;
-  if (!(along.normalized().cross(crack.through.normalized()).norm() > kParallel))
+  if (!(along.normalized().cross(line.through.normalized()).norm() > kParallel))
     return values.place_of("through").fail("'through' does not span a plane with the crack",
                                            "a direction across 'to' - 'from'");
-  return crack;
+  return CrackSettings{line, values.place};
 }
 
 Expected<RecordSettings> read_record_section(const SectionValues& values) {

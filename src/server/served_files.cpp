@@ -87,7 +87,7 @@ Expected<ServedFiles> ServedFiles::open(const fs::path& page, const fs::path& re
   ServedFiles files;
   files.page_ = fs::canonical(page, not_there);
   if (not_there || !fs::is_regular_file(files.page_ / "index.html", not_there))
-    return fail("the page is not there", "`make play` builds it; --page names another folder", page.string());
+    return fail("the page is not there", "`make viewer` builds it; --page names another folder", page.string());
   files.recordings_ = recordings;
   return files;
 }

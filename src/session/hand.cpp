@@ -1,5 +1,7 @@
 #include "session/hand.h"
 
+#include <algorithm>
+
 #include <Eigen/Eigenvalues>
 
 namespace rhexis::session {
@@ -65,12 +67,8 @@ std::span<const NodeId> Hand::nodes() const {
 }
 
 bool Hand::has_lost_hold(const mesh::TornMesh& body) const {
-  for (const NodeId node : nodes()) {
-    bool in_solve = false;
-    for (const TetId tet : body.tets_around(node)) in_solve = in_solve || body.is_solved(tet);
-    if (!in_solve) return true;
-  }
-  return false;
+  const auto held = nodes();
+  return std::any_of(held.begin(), held.end(), [&](NodeId node) { return !body.is_solved(node); });
 }
 
 response::ContactLaw Hand::law_by(const response::Response& response) const {

@@ -32,7 +32,7 @@ std::uint64_t fingerprint_of(const scene::TearProblem& problem) {
   return hash.value();
 }
 
-Expected<std::unique_ptr<OpenBody>> start_body(SceneChoice scene, scene::TearProblem problem, std::string model,
+Expected<std::unique_ptr<OpenBody>> start_body(SceneChoice scene, scene::TearProblem problem,
                                                response::SharedRecord record) {
   Expected<TearStart> start = start_tear(problem, std::move(record));
   if (!start) return fail(std::move(start.error()));
@@ -40,7 +40,6 @@ Expected<std::unique_ptr<OpenBody>> start_body(SceneChoice scene, scene::TearPro
   const std::uint64_t intact = fingerprint_of(problem);
   auto body = std::make_unique<OpenBody>(OpenBody{.scene = std::move(scene),
                                                   .problem = std::move(problem),
-                                                  .model = std::move(model),
                                                   .start = std::move(*start),
                                                   .surface = std::move(surface)});
   const TearSession& tear = body->tear();
@@ -97,12 +96,11 @@ Expected<std::unique_ptr<OpenBody>> open_body(SceneChoice choice) {
   set_thread_count(scene->solver.threads);
   Expected<response::SharedRecord> record = read_record_of(*problem, choice.record);
   if (!record) return fail(std::move(record.error()));
-  return start_body(std::move(choice), std::move(*problem),
-                    std::string(model::kModelNames[static_cast<std::size_t>(scene->model.kind)]), std::move(*record));
+  return start_body(std::move(choice), std::move(*problem), std::move(*record));
 }
 
 Expected<std::unique_ptr<OpenBody>> reopen(const OpenBody& body) {
-  return start_body(body.scene, body.problem, body.model, body.start.record);
+  return start_body(body.scene, body.problem, body.start.record);
 }
 
 std::uint64_t chained(std::uint64_t fingerprint, const mesh::MeshEdit& edit, bool taken_back) {

@@ -32,7 +32,6 @@ struct SceneChoice {
 struct OpenBody {
   SceneChoice scene;
   scene::TearProblem problem;
-  std::string model;  ///< that the scene names
   TearStart start;
   SurfaceTracker surface;
   std::size_t first_topology = 0;         ///< number of edits that the scene's own cracks made

@@ -29,7 +29,9 @@ Expected<RecordingFile> RecordingFile::open(const std::filesystem::path& path) {
   RecordingFile out;
   out.name_ = path.string();
   std::error_code code;
-  if (!std::filesystem::is_regular_file(path, code)) return out.wrong("there is no such file");
+  const std::filesystem::file_status status = std::filesystem::status(path, code);
+  if (!std::filesystem::exists(status)) return out.wrong("there is no such file");
+  if (!std::filesystem::is_regular_file(status)) return out.wrong("not a file");
   out.file_bytes_ = std::filesystem::file_size(path, code);
   if (code || !mesh::io::has_hdf5_signature(path)) return out.wrong("not an HDF5 file");
   // As one who reads while another writes: so a file opens whose writer was killed.

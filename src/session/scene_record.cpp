@@ -24,7 +24,7 @@ record::build::CampaignRequest record_request(const scene::TearProblem& problem,
   const scene::CrackSettings& crack = problem.cracks.front();
   return {.mesh = problem.mesh,
           .elastic = problem.body,
-          .crack = {crack.from, crack.to, crack.through},
+          .crack = crack.line,
           .parameters = problem.record.parameters,
           .single_precision = problem.record.single_precision,
           .program = std::move(program),

@@ -21,13 +21,6 @@ TearSettings settings_of(const scene::TearProblem& problem, response::SharedReco
       .contact = problem.interaction.blend_contact ? response::ContactRule::blend : response::ContactRule::consistent};
 }
 
-std::vector<CrackLine> cracks_of(const scene::TearProblem& problem) {
-  std::vector<CrackLine> lines;
-  for (const scene::CrackSettings& crack : problem.cracks)
-    lines.push_back({crack.from, crack.to, crack.through, crack.place.file ? *crack.place.file : "", crack.place.line});
-  return lines;
-}
-
 std::string placed(const scene::Place& place, const std::string& text) { return place.fail(text).value().message(); }
 
 }  // namespace
@@ -40,7 +33,7 @@ Expected<TearStart> start_tear(const scene::TearProblem& problem, response::Shar
     start.record = std::move(*read);
   }
   Expected<std::unique_ptr<TearSession>> made =
-      TearSession::make(problem.mesh, settings_of(problem, start.record), cracks_of(problem));
+      TearSession::make(problem.mesh, settings_of(problem, start.record), problem.cracks);
   if (!made) {
     const scene::Place& place = problem.fracture.place;
     return fail(made.error().at(place.file ? *place.file : "", place.line));

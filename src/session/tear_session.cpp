@@ -37,7 +37,7 @@ TearSession::TearSession(const mesh::TetMesh& mesh, TearSettings settings)
 }
 
 Expected<std::unique_ptr<TearSession>> TearSession::make(const mesh::TetMesh& mesh, TearSettings settings,
-                                                         const std::vector<CrackLine>& cracks) {
+                                                         const std::vector<scene::CrackSettings>& cracks) {
   std::unique_ptr<TearSession> session(new TearSession(mesh, std::move(settings)));
   const TearSettings& all = session->settings_;
   // Where energy decides whether, any positive strength serves to ask for the direction.
@@ -50,8 +50,8 @@ Expected<std::unique_ptr<TearSession>> TearSession::make(const mesh::TetMesh& me
   session->criterion_ = std::move(*criterion);
   if (all.toughness && cracks.empty())
     return fail("a toughness says when a crack runs on, not where one starts", "add a [[crack]], or give a strength");
-  for (const CrackLine& line : cracks)
-    if (Expected<void> done = session->open(line); !done) return fail(done.error().at(line.file, line.line));
+  for (const scene::CrackSettings& crack : cracks)
+    if (Expected<void> done = session->open(crack); !done) return fail(std::move(done.error()));
 
   session->response_ = session->make_response(all.record);
   if (!session->response_)
@@ -81,10 +81,10 @@ std::optional<Vec3> TearSession::compared_force() const {
   return comparison_ ? std::optional<Vec3>(comparison_->force(hand_)) : std::nullopt;
 }
 
-Expected<void> TearSession::open(const CrackLine& line) {
-  Expected<fracture::FirstCut> cut = fracture::cut_initial(
-      body(), line.from, line.to, line.through, torn_.surroundings(), torn_.incision_settings(hand_.nodes()));
-  if (!cut) return fail(std::move(cut.error()));
+Expected<void> TearSession::open(const scene::CrackSettings& crack) {
+  Expected<fracture::FirstCut> cut =
+      fracture::cut_initial(body(), crack.line, torn_.surroundings(), torn_.incision_settings(hand_.nodes()));
+  if (!cut) return crack.place.fail(cut.error().what, cut.error().remedy);
   TickReport report;
   take(beginning(std::move(cut->start.cracks), std::move(cut->incision)), report, {});
   return {};

@@ -17,6 +17,7 @@
 #include "fracture/torn_body.h"
 #include "response/force_basis.h"
 #include "response/response.h"
+#include "scene/scene.h"
 #include "session/advance.h"
 #include "session/comparison.h"
 #include "session/hand.h"
@@ -42,7 +43,7 @@ class TearSession {
   /// The body under its loads, with its first cracks cut. Errors say what is wrong in the user's words, with the place
   /// of the crack that they are about: a crack that misses the body, a body that its cracks leave unstable.
   static Expected<std::unique_ptr<TearSession>> make(const mesh::TetMesh& mesh, TearSettings settings,
-                                                     const std::vector<CrackLine>& cracks);
+                                                     const std::vector<scene::CrackSettings>& cracks);
 
   /// Takes hold of the surface point nearest to `at` (m, reference). Errors: as Hand::grasp.
   Expected<void> grasp(const Vec3& at, response::ContactMode mode = response::ContactMode::hold);
@@ -111,7 +112,7 @@ class TearSession {
   [[nodiscard]] Change beginning(std::vector<fracture::Crack> cracks, fracture::Incision incision) const;
   bool take(Change change, TickReport& report, const Observer& observer);
 
-  Expected<void> open(const CrackLine& line);
+  Expected<void> open(const scene::CrackSettings& crack);
   /// The body gives its last edit back, with the cracks as they were; the response is not told.
   mesh::MeshEdit take_back(const std::vector<fracture::Crack>& cracks);
   void follow_nodes();

@@ -32,13 +32,4 @@ struct TearSettings {
   bool background = false;
 };
 
-/// A straight crack to start with: it opens all of the body that lies along `through`.
-struct CrackLine {
-  Vec3 from = Vec3::Zero();  ///< m
-  Vec3 to = Vec3::Zero();    ///< m
-  Vec3 through = Vec3::UnitZ();
-  std::string file = {};  ///< where it was said, for errors; empty: nowhere
-  int line = 0;           ///< 0: not in a line
-};
-
 }  // namespace rhexis::session

@@ -111,8 +111,7 @@ Expected<void> open_session(const LiveOptions& options, const std::filesystem::p
   const auto ticks = static_cast<std::size_t>(1e3 * (options.seconds + 60.0));
   settings.device = [&](std::shared_ptr<haptics::HandPath> script) -> Expected<std::unique_ptr<haptics::Device>> {
     Expected<std::unique_ptr<haptics::Device>> device = haptics::make_device(
-        options.device,
-        {.hand = std::move(script), .readings = {}, .emulator = haptics::EmulatorSettings::firmly_held()});
+        options.device, {.hand = std::move(script), .emulator = haptics::EmulatorSettings::firmly_held()});
     if (!device) return device;
     if (!(*device)->traits().follows_script)
       return fail(fmt::format("device '{}' does not tear by itself", options.device), "one that follows the script");
@@ -200,6 +199,9 @@ Expected<LiveRun> run_live(const LiveOptions& options, const StudyFolder& folder
       return fail(fmt::format("client {} was lost: {}", run.clients.size(), trouble));
   }
   show.server->stop();
+  std::error_code gone;  // the page is no result
+  std::filesystem::remove(folder.path() / "page/index.html", gone);
+  std::filesystem::remove(folder.path() / "page", gone);
   run.ticks = show.session->haptic_loop().statistics();
   run.priority = show.session->haptic_loop().priority_text();
   run.marks = show.probe->take_marks();

@@ -41,8 +41,7 @@ Expected<std::unique_ptr<const Case>> Case::make(int nodes) {
   Expected<StudyPlate> plate = make_study_plate(nodes);
   if (!plate) return fail(std::move(plate.error()));
   out->plate = std::move(*plate);
-  const session::CrackLine& line = out->plate.cracks.front();
-  const record::build::FirstCrack crack{line.from, line.to, line.through};
+  const fracture::CrackLine& crack = out->plate.cracks.front().line;
   Expected<record::build::TornState> torn =
       record::build::TornState::begin(out->plate.mesh, out->plate.settings.body, crack);
   if (!torn) return fail(std::move(torn.error()));

@@ -54,7 +54,7 @@ std::string csv(const ordered_json& rows) {
 Expected<StudyFolder> StudyFolder::open(std::filesystem::path path) {
   std::error_code code;
   std::filesystem::create_directories(path, code);
-  if (code) return fail("cannot make folder '" + path.string() + "': " + code.message(), "choose another with --out");
+  if (code) return fail("cannot make the folder: " + code.message(), "choose another with --out", path.string());
   return StudyFolder(std::move(path));
 }
 

@@ -18,7 +18,7 @@ Expected<StudyPlate> make_study_plate(int nodes) {
   plate.settings.criterion = "maximum-principal";
   plate.settings.strength = 0.4e6;
   plate.settings.advance_threshold = 0.2e6;
-  plate.cracks = {{.from = Vec3(0.12, 0.0, 0.0), .to = Vec3(0.12, 0.06, 0.0), .through = Vec3::UnitZ()}};
+  plate.cracks.push_back({{.from = Vec3(0.12, 0.0, 0.0), .to = Vec3(0.12, 0.06, 0.0), .through = Vec3::UnitZ()}});
   plate.at = Vec3(0.10, 0.0, 0.005);
   plate.by = Vec3(-0.12, 0.0, 0.0);
   return plate;

@@ -15,7 +15,7 @@ namespace rhexis::studies {
 struct StudyPlate {
   mesh::TetMesh mesh;
   session::TearSettings settings;
-  std::vector<session::CrackLine> cracks;
+  std::vector<scene::CrackSettings> cracks;
   Vec3 at = Vec3::Zero();  ///< m, where it is held
   Vec3 by = Vec3::Zero();  ///< m, the whole pull
 };

@@ -7,7 +7,6 @@
 
 #include "haptics/device_list.h"
 #include "haptics/pointer_device.h"
-#include "haptics/replay_device.h"
 #include "haptics/script_device.h"
 #include "tests/haptics/laws.h"
 
@@ -52,17 +51,6 @@ TEST(ScriptDevice, IsWhereTheScriptHasItAndGoneWhileThatHoldsNothing) {
   EXPECT_EQ(device.read(2).position, Vec3(0.002, 0.0, 0.0));
   EXPECT_EQ(device.read(3).position, Vec3(0.001, 0.0, 0.0)) << "counts from the hold";
   EXPECT_FALSE(device.read(6).present);
-}
-
-TEST(ReplayDevice, GivesWhatWasRecordedAndIsGoneThen) {
-  std::vector<Reading> readings{at(Vec3(1.0, 2.0, 3.0)), at(Vec3(4.0, 5.0, 6.0))};
-  readings[1].buttons = 3;
-  ReplayDevice device(readings, strong_device());
-  EXPECT_EQ(device.traits().max_force, 8.9);
-  EXPECT_EQ(device.read(1).position, Vec3(4.0, 5.0, 6.0));
-  EXPECT_EQ(device.read(1).buttons, 3u);
-  EXPECT_EQ(device.read(0).position, Vec3(1.0, 2.0, 3.0));
-  EXPECT_FALSE(device.read(2).present);
 }
 
 TEST(PointerDevice, IsWhereItWasLastMovedTo) {
@@ -171,7 +159,7 @@ TEST(DeviceList, AllThatAreListedCanBeMade) {
     EXPECT_TRUE(names.insert(traits.name).second);
     EXPECT_FALSE(traits.what.empty());
     const Expected<std::unique_ptr<Device>> device =
-        make_device(traits.name, {.hand = moving({{.seconds = 0.01}}), .readings = {Reading{}}, .emulator = {}});
+        make_device(traits.name, {.hand = moving({{.seconds = 0.01}}), .emulator = {}});
     ASSERT_TRUE(device) << device.error().message();
     EXPECT_EQ((*device)->traits().name, traits.name);
     ASSERT_TRUE((*device)->open());
@@ -179,7 +167,7 @@ TEST(DeviceList, AllThatAreListedCanBeMade) {
     EXPECT_TRUE(check_settings(settings_for((*device)->traits())));
     EXPECT_EQ(settings_for((*device)->traits()).is_rigid(), traits.max_force == 0.0);
   }
-  EXPECT_EQ(names, (std::set<std::string>{"emulator", "pointer", "replay", "script"}));
+  EXPECT_EQ(names, (std::set<std::string>{"emulator", "pointer", "script"}));
 }
 
 TEST(DeviceList, WhatIsNotThereIsSaidWithWhatIs) {
@@ -187,7 +175,6 @@ TEST(DeviceList, WhatIsNotThereIsSaidWithWhatIs) {
   EXPECT_THAT(make_device("falcon-9", {}).error().message(), HasSubstr("one of pointer, script"));
   EXPECT_THAT(make_device("script", {}).error().message(), HasSubstr("no hand"));
   EXPECT_THAT(make_device("emulator", {}).error().message(), HasSubstr("no hand"));
-  EXPECT_THAT(make_device("replay", {}).error().message(), HasSubstr("rhexis replay RECORDING"));
 }
 
 }  // namespace

@@ -79,6 +79,22 @@ TEST(TornMesh, AppliesWhatAnEditSays) {
   EXPECT_EQ(body.tets_around(NodeId(nodes))[0], edit.rewired[0].tet);
 }
 
+TEST(TornMesh, ANodeIsInTheSolveWhileOneOfItsTetsIs) {
+  TornMesh body(test::make_kuhn_box({.cells = {2, 2, 2}}));
+  const NodeId node = body.mesh().tets[0][0];
+  MeshEdit edit;
+  edit.frozen.assign(body.tets_around(node).begin(), body.tets_around(node).end());
+  const TetId last = edit.frozen.back();
+  edit.frozen.pop_back();
+  body.apply(edit);
+  EXPECT_TRUE(body.is_solved(node));
+  MeshEdit rest;
+  rest.frozen = {last};
+  body.apply(rest);
+  EXPECT_TRUE(body.is_alive(node));
+  EXPECT_FALSE(body.is_solved(node));
+}
+
 TEST(TornMesh, UndoReturnsEveryBitOfEveryTopology) {
   TornMesh body(test::make_kuhn_box({.cells = {3, 3, 2}}));
   std::vector<std::vector<std::uint64_t>> before;

@@ -155,7 +155,7 @@ TEST(GoodScene, EverythingIsRead) {
   EXPECT_EQ(scene.fracture->local_radius, 0.04);
   EXPECT_EQ(scene.fracture->incision, "split");
   ASSERT_EQ(scene.cracks.size(), 1U);
-  EXPECT_EQ(scene.cracks[0].to, Vec3(0.12, 0.06, 0.0));
+  EXPECT_EQ(scene.cracks[0].line.to, Vec3(0.12, 0.06, 0.0));
   EXPECT_EQ(scene.interaction.response, "recorded");
   EXPECT_EQ(scene.interaction.record, "folder/plate.h5");
   EXPECT_EQ(scene.interaction.max_force, 4.0);

@@ -59,8 +59,9 @@ TEST(Override, ErrorsNameIt) {
   EXPECT_EQ(line("model.beat=1"), "--set model.beat=1: unknown key 'model.beat' (did you mean 'beta'?)");
   EXPECT_EQ(line("materail.young=1"), "--set materail.young=1: unknown section 'materail' (did you mean 'material'?)");
   EXPECT_EQ(line("pull.0.seconds=1"), "--set pull.0.seconds=1: 'pull' has no entry '0' (it is empty)");
-  EXPECT_EQ(line("support.2.x=1"), "--set support.2.x=1: 'support' has no entry '2' (0 to 1)");
-  EXPECT_EQ(line("support.first.x=1"), "--set support.first.x=1: 'support' has no entry 'first' (0 to 1)");
+  EXPECT_EQ(line("support.2.x=1"), "--set support.2.x=1: 'support' has no entry '2' (support.0 to support.1)");
+  EXPECT_EQ(line("support.first.x=1"),
+            "--set support.first.x=1: 'support' has no entry 'first' (support.0 to support.1)");
   EXPECT_EQ(line("title.a=1"), "--set title.a=1: 'title' is text, it holds no 'a'");
   EXPECT_EQ(line("model.beta"), "--set model.beta: no '=' in it (--set key=value, as in --set model.beta=0)");
   EXPECT_EQ(line("=3"), "--set =3: not a key before the '=' (a dotted name, as in --set model.beta=0)");

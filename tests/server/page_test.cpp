@@ -192,7 +192,7 @@ TEST(Page, ListeningFailsInWords) {
   EXPECT_THAT(wrong(settings), HasSubstr("'here' is not an address"));
   settings.address = "127.0.0.1";
   settings.page = served.folder / "out";
-  EXPECT_THAT(wrong(settings), HasSubstr("make play"));
+  EXPECT_THAT(wrong(settings), HasSubstr("make viewer"));
 }
 
 }  // namespace

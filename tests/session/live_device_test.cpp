@@ -20,8 +20,8 @@ constexpr double kForceScale = 0.2;
 
 MakeDevice device(const std::string& name) {
   return [name](std::shared_ptr<haptics::HandPath> script) {
-    return haptics::make_device(
-        name, {.hand = std::move(script), .readings = {}, .emulator = haptics::EmulatorSettings::firmly_held()});
+    return haptics::make_device(name,
+                                {.hand = std::move(script), .emulator = haptics::EmulatorSettings::firmly_held()});
   };
 }
 
@@ -115,8 +115,6 @@ TEST(LiveDevice, WhatCannotHoldIsSaid) {
   const auto refused = [&] { return LiveSession::open(at.settings, at.frames).error().message(); };
   at.settings.device = device("emulater");
   EXPECT_THAT(refused(), HasSubstr("did you mean 'emulator'?"));
-  at.settings.device = device("replay");
-  EXPECT_THAT(refused(), HasSubstr("rhexis replay"));
   at.settings.device = device("script");
   const std::string plate = test::kLivePlate;
   at.settings.scene = at.folder.write("still.toml", plate.substr(0, plate.find("[[pull]]")));

@@ -50,7 +50,7 @@ class RandomPull {
   /// `check_share`: part of the topologies that are held against the oracle.
   void run(PullTally& tally, double check_share) {
     make_body();
-    const std::vector<session::CrackLine> cracks = choose_cracks();
+    const std::vector<scene::CrackSettings> cracks = choose_cracks();
     Expected<std::unique_ptr<session::TearSession>> made = session::TearSession::make(mesh_, settings_, cracks);
     if (!made) return;  // the crack misses the body, or takes its support: said in words, and no crash
     tear_ = std::move(*made);
@@ -134,21 +134,21 @@ class RandomPull {
     settings_.background = uniform(0, 1) < 0.5;
   }
 
-  std::vector<session::CrackLine> choose_cracks() {
+  std::vector<scene::CrackSettings> choose_cracks() {
     const Vec3 size = box_.size();
     if (plate_) {
       // From the middle of an edge inward, at a slant.
       const Vec3 from(uniform(0.2, 0.8) * size.x(), 0.0, 0.0);
       const double aside = uniform(-0.03, 0.03);
       const Vec3 to = from + Vec3(aside, uniform(0.02, 0.08), 0.0);
-      return {{from, to, Vec3::UnitZ()}};
+      return {{{from, to, Vec3::UnitZ()}}};
     }
     if (uniform(0, 1) < 0.3) return {};  // starts where it yields
     const Vec3 inside = box_.from + vector(0.3, 0.7).cwiseProduct(size);
     Vec3 way = direction();
     Vec3 through = direction();
     through = (through - through.dot(way) * way).normalized();
-    return {{inside - size.norm() * way, inside, through}};
+    return {{{inside - size.norm() * way, inside, through}}};
   }
 
   void pull(PullTally& tally, double check_share) {

@@ -107,8 +107,8 @@ TEST_P(RealBodies, TearAlongAndAroundWithTheForceOfTheTornBody) {
   settings.strength = real().strength;
   settings.advance_threshold = 0.5 * real().strength;
   settings.incision = std::get<1>(GetParam());
-  std::vector<CrackLine> cracks;
-  if (!real().crack.empty()) cracks.push_back({place(real().crack[0]), place(real().crack[1]), Vec3::UnitZ()});
+  std::vector<scene::CrackSettings> cracks;
+  if (!real().crack.empty()) cracks.push_back({{place(real().crack[0]), place(real().crack[1]), Vec3::UnitZ()}});
   Expected<std::unique_ptr<TearSession>> made = TearSession::make(mesh, settings, cracks);
   ASSERT_TRUE(made.has_value()) << made.error().message();
   tear = std::move(*made);

@@ -160,6 +160,7 @@ TEST_F(RecordedPlate, FilesThatAreNoneAreRefusedAndACutOneDoesNotCrash) {
     return file ? "good" : file.error().message();
   };
   EXPECT_THAT(message(folder_->path() / "none.h5"), testing::HasSubstr("there is no such file"));
+  EXPECT_THAT(message(folder_->path()), testing::HasSubstr("not a file"));
   EXPECT_THAT(message(folder_->write("text.h5", "text")), testing::HasSubstr("not an HDF5 file"));
   std::ifstream in(recording(), std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());

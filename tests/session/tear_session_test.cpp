@@ -14,7 +14,7 @@ namespace {
 struct PlateCase {
   mesh::TetMesh mesh = *mesh::make_plate({Vec3(0.24, 0.24, 0.01)}, 506);
   TearSettings settings;
-  std::vector<CrackLine> cracks{{Vec3(0.12, 0.0, 0.0), Vec3(0.12, 0.06, 0.0), Vec3::UnitZ()}};
+  std::vector<scene::CrackSettings> cracks{{{Vec3(0.12, 0.0, 0.0), Vec3(0.12, 0.06, 0.0), Vec3::UnitZ()}}};
   Vec3 at{0.10, 0.0, 0.005};
   Vec3 by{-0.12, 0.0, 0.0};
 
@@ -163,7 +163,7 @@ PlateCase mirrored(PlateCase plate) {
   const auto flip = [](const Vec3& x) { return Vec3(0.24 - x.x(), x.y(), x.z()); };
   for (Vec3& node : plate.mesh.nodes) node = flip(node);
   for (mesh::Tet& tet : plate.mesh.tets) std::swap(tet[2], tet[3]);
-  for (CrackLine& crack : plate.cracks) crack = {flip(crack.from), flip(crack.to), crack.through};
+  for (auto& [line, place] : plate.cracks) line = {flip(line.from), flip(line.to), line.through};
   plate.at = flip(plate.at);
   plate.by.x() = -plate.by.x();
   return plate;
@@ -177,7 +177,7 @@ TEST_P(EveryCriterion, TheCrackMirrorsWithTheBody) {
   plate.settings.strength = 0.1e6;
   plate.settings.advance_threshold = 0.05e6;
   // Off the middle, where no node lies on the crack: one that does belongs to a side by rule, which does not mirror.
-  plate.cracks = {{Vec3(0.1213, 0.0, 0.0), Vec3(0.1207, 0.06, 0.0), Vec3::UnitZ()}};
+  plate.cracks = {{{Vec3(0.1213, 0.0, 0.0), Vec3(0.1207, 0.06, 0.0), Vec3::UnitZ()}}};
   const auto one = plate.make();
   const PlateCase other_plate = mirrored(plate);
   const auto other = other_plate.make();
@@ -211,8 +211,8 @@ INSTANTIATE_TEST_SUITE_P(All, EveryCriterion,
 
 TEST(TearSession, OneAdvanceATimeIsOneLongTickInParts) {
   PlateCase plate;
-  plate.cracks = {{Vec3(0.091, 0.0, 0.0), Vec3(0.09, 0.04, 0.0), Vec3::UnitZ()},
-                  {Vec3(0.159, 0.0, 0.0), Vec3(0.16, 0.04, 0.0), Vec3::UnitZ()}};
+  plate.cracks = {{{Vec3(0.091, 0.0, 0.0), Vec3(0.09, 0.04, 0.0), Vec3::UnitZ()}},
+                  {{Vec3(0.159, 0.0, 0.0), Vec3(0.16, 0.04, 0.0), Vec3::UnitZ()}}};
   plate.settings.strength = 0.1e6;
   plate.settings.advance_threshold = 0.05e6;
   const auto whole = plate.make();
@@ -363,7 +363,7 @@ TEST(TearSession, AHeldPointThatASupportHoldsIsRefused) {
 
 TEST(TearSession, SaysWhatIsWrongWithACrack) {
   PlateCase plate;
-  plate.cracks = {{Vec3(0.5, 0.0, 0.0), Vec3(0.5, 0.06, 0.0), Vec3::UnitZ()}};
+  plate.cracks = {{{Vec3(0.5, 0.0, 0.0), Vec3(0.5, 0.06, 0.0), Vec3::UnitZ()}}};
   EXPECT_FALSE(TearSession::make(plate.mesh, plate.settings, plate.cracks).has_value());
   plate.cracks.clear();
   plate.settings.strength.reset();

@@ -66,6 +66,7 @@ TEST(LiveStudy, ItsNumbersAgreeWithEachOther) {
     const std::string name = "hand to picture, client " + std::to_string(client.at("client").get<int>());
     EXPECT_GT(count_of(histograms, name), 0U);
   }
+  EXPECT_FALSE(std::filesystem::exists(path / "page"));
   for (const char* name : {"live.csv", "live.json", "live-histograms.csv", "live-clients.csv", "live-ticks.svg",
                            "live-latency.svg", "live-plate.toml"})
     EXPECT_TRUE(std::filesystem::exists(path / name)) << name;

@@ -41,7 +41,7 @@ TEST(ReactionCell, SaysWhatTheRecordSays) {
   record::build::CampaignRequest request;
   request.mesh = plate.mesh;
   request.elastic = plate.settings.body;
-  request.crack = {plate.cracks[0].from, plate.cracks[0].to, plate.cracks[0].through};
+  request.crack = plate.cracks[0].line;
   request.parameters.directions = 3;  // every 90 degrees
   const record::build::Campaign campaign = *record::build::Campaign::plan(request);
   const std::filesystem::path file = test::fresh_folder("reaction_cell") / "plate.h5";

@@ -31,7 +31,7 @@ TEST(StudyFolder, AFolderThatCannotBeMadeIsAnError) {
   ASSERT_TRUE(write_atomically(folder / "file", "in the way"));
   const Expected<StudyFolder> study = StudyFolder::open(folder / "file" / "deep");
   ASSERT_FALSE(study);
-  EXPECT_THAT(study.error().message(), testing::HasSubstr("cannot make folder"));
+  EXPECT_THAT(study.error().message(), testing::HasSubstr("cannot make the folder"));
 }
 
 TEST(StudyFolder, AFigureHasItsName) {

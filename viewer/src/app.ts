@@ -47,7 +47,7 @@ export class App implements Listener {
   private readonly scene = new ScenePanel(this.send);
   private readonly advances = new AdvancesTable();
   private readonly loops = new LoopsPanel();
-  private readonly transport = new Transport(this.send);
+  private readonly transport = new Transport(this.send, () => this.store.state);
   private readonly timeline = new TimelineBar(this.send);
   private readonly field = byId("field", HTMLSelectElement);
   private readonly hint = byId("hint", HTMLParagraphElement);
@@ -162,7 +162,8 @@ export class App implements Listener {
     this.plot.show(store.trace, store.own, store.compared, store.advances.map((advance) => advance.time), store.body?.maxForce ?? 0);
     this.loops.show(store.state?.rates ?? null, this.socket.roundTrip);
     this.advances.show(store.advances);
-    this.transport.show(store.state, mayAct, (store.body?.script ?? 0) > 0);
+    // The scene's own cracks, of time 0, are not taken back.
+    this.transport.show(mayAct, (store.body?.script ?? 0) > 0, store.advances.some((advance) => advance.time > 0));
     this.scene.isEnabled = mayAct;
     this.timeline.isEnabled = mayAct;
     this.field.disabled = !mayAct;

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 
 import { lightnessOf, rgbOf } from "../src/colour/oklab";
 import { bytesOf, diverging, gradientOf, sequential } from "../src/colour/ramp";
-import { kEmptyScale, kFields, fieldKind, niceAbove, scaleFor } from "../src/colour/scale";
+import { kEmptyScale, kFields, fieldKind, mappingOf, niceAbove, scaleFor } from "../src/colour/scale";
 import { Field } from "../src/wire/rhexis_generated";
 
 const steps = (n: number): number[] => Array.from({ length: n }, (_, k) => k / (n - 1));
@@ -72,6 +72,14 @@ describe("The scale of colours", () => {
     expect(scaleFor(stress, new Float32Array([450]), before).top).toBe(1000);
     expect(scaleFor(stress, new Float32Array([200]), before).top).toBe(200);
     expect(scaleFor(stress, new Float32Array([1100]), before).top).toBe(1500);
+  });
+  it("gives zero its own colour, where all is zero too", () => {
+    const placeOf = (kind: typeof mean, top: number): number => {
+      const { first, perUnit } = mappingOf(kind, { ...kEmptyScale, top });
+      return (0 - first) * perUnit;
+    };
+    expect([placeOf(mean, 0), placeOf(mean, 2000)]).toEqual([0.5, 0.5]);
+    expect([placeOf(stress, 0), placeOf(stress, 2000)]).toEqual([0, 0]);
   });
   it("is there for every field of the wire but none", () => {
     const all = Object.values(Field).filter((field): field is Field => typeof field === "number" && field !== Field.none);

@@ -21,7 +21,7 @@ namespace rhexis::record::build {
 struct CampaignRequest {
   mesh::TetMesh mesh;
   response::ElasticBody elastic;
-  FirstCrack crack;
+  fracture::CrackLine crack;
   store::Parameters parameters;
   bool single_precision = false;
   std::string program;  ///< "rhexis 0.1.0"

@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 
 #include "base/atomic_file.h"
@@ -23,19 +25,23 @@ constexpr const char* kTag = "fingerprint";
 /// A lock that goes with the process, however that ends.
 class MergeLock {
  public:
-  explicit MergeLock(const fs::path& path) : descriptor_(::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644)) {
-    held_ = descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
-  }
+  MergeLock() = default;
   ~MergeLock() {
     if (descriptor_ >= 0) ::close(descriptor_);
   }
   MergeLock(const MergeLock&) = delete;
   MergeLock& operator=(const MergeLock&) = delete;
-  [[nodiscard]] bool held() const { return held_; }
+  /// False: another process has it. Errors: nobody can have it, where nothing can be written or files know no locks.
+  Expected<bool> take(const fs::path& path) {
+    descriptor_ = ::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644);
+    if (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return true;
+    if (descriptor_ >= 0 && errno == EWOULDBLOCK) return false;
+    return fail(std::string("cannot be locked: ") + std::strerror(errno),
+                "a folder that can be written to, on a file system with locks", path.string());
+  }
 
  private:
-  int descriptor_;
-  bool held_;
+  int descriptor_ = -1;
 };
 
 }  // namespace
@@ -201,10 +207,12 @@ bool CampaignRun::is_missing_below(int number) {
 }
 
 Expected<Ending> CampaignRun::merge() {
-  const MergeLock lock(parts_ / "merge");
+  MergeLock lock;
+  const Expected<bool> ours = lock.take(parts_ / "merge");
   std::error_code code;
   if (fs::exists(file_, code)) return Ending::left_to_another;
-  if (!lock.held()) return Ending::left_to_another;
+  if (!ours) return fail(ours.error());
+  if (!*ours) return Ending::left_to_another;
   const fs::path whole = parts_ / "record";
   if (Expected<void> written = write_record(whole); !written) return fail(std::move(written.error()));
   fs::rename(whole, file_, code);

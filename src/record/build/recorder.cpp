@@ -10,11 +10,6 @@
 namespace rhexis::record::build {
 namespace {
 
-bool is_in_solve(const mesh::TornMesh& body, NodeId node) {
-  const auto around = body.tets_around(node);
-  return std::any_of(around.begin(), around.end(), [&](TetId tet) { return body.is_solved(tet); });
-}
-
 std::unique_ptr<const OperatorLayout> make_layout(const mesh::TetMesh& mesh, const response::ElasticModel& model) {
   std::vector<std::int32_t> connectivity;
   for (const mesh::Tet& tet : mesh.tets)
@@ -105,7 +100,7 @@ std::vector<double> Recorder::stiffness_of(const mesh::TornMesh& body) const {
   }
   const store::OperatorPattern& pattern = layout_->pattern();
   for (std::size_t j = 0; j < pattern.dof.size(); ++j) {
-    if (!is_in_solve(body, NodeId(pattern.dof[j] / 3))) out[static_cast<std::size_t>(pattern.start[j])] = 1.0;
+    if (!body.is_solved(NodeId(pattern.dof[j] / 3))) out[static_cast<std::size_t>(pattern.start[j])] = 1.0;
   }
   return out;
 }
@@ -125,11 +120,11 @@ std::vector<double> Recorder::rest_of(const FactoredState& state) const {
       load.segment<3>(3 * Eigen::Index{nodes[static_cast<std::size_t>(a)]}) += f.segment<3>(3 * a);
   }
   for (std::int32_t i = 0; i < elements.node_count(); ++i) {
-    if (is_in_solve(body, NodeId(i))) load.segment<3>(3 * Eigen::Index{i}) += elements.node_load(i);
+    if (body.is_solved(NodeId(i))) load.segment<3>(3 * Eigen::Index{i}) += elements.node_load(i);
   }
   VectorX u = store::displacement_by<double>(layout_->pattern(), state.factor.values(), load);
   for (std::int32_t i = 0; i < elements.node_count() && model_.moves_supports; ++i) {
-    if (is_in_solve(body, NodeId(i))) u.segment<3>(3 * Eigen::Index{i}) += model_.value.segment<3>(3 * Eigen::Index{i});
+    if (body.is_solved(NodeId(i))) u.segment<3>(3 * Eigen::Index{i}) += model_.value.segment<3>(3 * Eigen::Index{i});
   }
   return {u.data(), u.data() + u.size()};
 }
@@ -161,7 +156,7 @@ std::vector<Mat3> Recorder::stiffnesses(const mesh::TornMesh& body, const std::v
   std::vector<Mat3> out;
   out.reserve(points_.size());
   for (const std::int32_t node : points_) {
-    if (!is_in_solve(body, NodeId(node))) {
+    if (!body.is_solved(NodeId(node))) {
       out.emplace_back(Mat3::Zero());
       continue;
     }
@@ -180,7 +175,7 @@ store::TopologyData Recorder::record(const FactoredState& state) const {
   const std::vector<double> inverse = state.factor.selected_inverse();
   store::TopologyData out;
   out.flags = state.torn.flags;
-  for (const std::int32_t node : points_) out.in_solve.push_back(is_in_solve(body, NodeId(node)) ? 1 : 0);
+  for (const std::int32_t node : points_) out.in_solve.push_back(body.is_solved(NodeId(node)) ? 1 : 0);
   for (const Mat3& s : stiffnesses(body, inverse)) {
     out.stiffness.insert(out.stiffness.end(), {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)});
   }

@@ -6,11 +6,10 @@
 #include <Eigen/Geometry>
 
 #include "fracture/path.h"
-#include "fracture/path_start.h"
 
 namespace rhexis::record::build {
 
-store::Frame frame_of(const FirstCrack& crack) {
+store::Frame frame_of(const fracture::CrackLine& crack) {
   store::Frame frame;
   frame.y = (crack.to - crack.from).normalized();
   frame.z = (crack.through - crack.through.dot(frame.y) * frame.y).normalized();
@@ -19,13 +18,13 @@ store::Frame frame_of(const FirstCrack& crack) {
 }
 
 Expected<TornState> TornState::begin(const mesh::TetMesh& mesh, const response::ElasticBody& elastic,
-                                     const FirstCrack& crack) {
+                                     const fracture::CrackLine& crack) {
   std::vector<std::int32_t> held;
   for (const model::PrescribedDof& support : elastic.supports) held.push_back(support.dof);
   TornState state{fracture::TornBody(mesh, held, fracture::IncisionMethod::keep_nodes), {}, 0};
   fracture::TornBody& body = state.body;
-  Expected<fracture::FirstCut> cut = fracture::cut_initial(body.mesh(), crack.from, crack.to, crack.through,
-                                                           body.surroundings(), body.incision_settings());
+  Expected<fracture::FirstCut> cut =
+      fracture::cut_initial(body.mesh(), crack, body.surroundings(), body.incision_settings());
   if (!cut) return fail(std::move(cut.error()));
   body.apply(std::move(cut->incision.edit));
   state.cracks = std::move(cut->start.cracks);

@@ -6,22 +6,15 @@
 #include <vector>
 
 #include "base/error.h"
-#include "fracture/crack.h"
+#include "fracture/path_start.h"
 #include "fracture/torn_body.h"
 #include "record/store/record.h"
 #include "response/elastic_elements.h"
 
 namespace rhexis::record::build {
 
-/// The crack of the scene: m, as in [[crack]].
-struct FirstCrack {
-  Vec3 from = Vec3::Zero();
-  Vec3 to = Vec3::Zero();
-  Vec3 through = Vec3::UnitZ();
-};
-
 /// y as the crack points, z along `through`, as far as it is across the crack.
-[[nodiscard]] store::Frame frame_of(const FirstCrack& crack);
+[[nodiscard]] store::Frame frame_of(const fracture::CrackLine& crack);
 
 struct TornState {
   fracture::TornBody body;
@@ -30,7 +23,7 @@ struct TornState {
 
   /// The body with its first crack cut. Errors as fracture::cut_initial.
   [[nodiscard]] static Expected<TornState> begin(const mesh::TetMesh& mesh, const response::ElasticBody& elastic,
-                                                 const FirstCrack& crack);
+                                                 const fracture::CrackLine& crack);
   /// Every front that still runs goes on by `length` (m) along `direction` (unit), whatever a criterion says. Where
   /// that meets nothing to cut, all stays as it is, and the flag says so.
   void advance(const Vec3& direction, double length);

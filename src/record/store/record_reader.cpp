@@ -141,7 +141,9 @@ Expected<RecordFile> RecordFile::open(const std::filesystem::path& path) {
   RecordFile out;
   out.name_ = path.string();
   std::error_code code;
-  if (!std::filesystem::is_regular_file(path, code)) return out.wrong("there is no such file");
+  const std::filesystem::file_status status = std::filesystem::status(path, code);
+  if (!std::filesystem::exists(status)) return out.wrong("there is no such file");
+  if (!std::filesystem::is_regular_file(status)) return out.wrong("not a file");
   out.file_bytes_ = std::filesystem::file_size(path, code);
   if (code || !mesh::io::has_hdf5_signature(path)) return out.wrong("not an HDF5 file");
   out.file_ = {H5Fopen(out.name_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};

@@ -246,6 +246,17 @@ TEST(Campaign, MeetsNoOtherRecord) {
   EXPECT_THAT(refusal(request), HasSubstr("plate.h5: there is a file of that name, and not of this record"));
 }
 
+TEST(Campaign, SaysThatItCannotBeLocked) {
+  const fs::path file = fresh_folder("record-unlocked") / "plate.h5";
+  fs::create_directories(file.string() + ".parts/merge");  // in the place of the lock's file
+  const Expected<Campaign> campaign = Campaign::plan(test::plate(200, false));
+  ASSERT_TRUE(campaign);
+  const Expected<CampaignReport> report = campaign->run(file, {}, {});
+  ASSERT_FALSE(report) << "nobody else is there to put the record together";
+  EXPECT_THAT(report.error().message(), HasSubstr("plate.h5.parts/merge: cannot be locked"));
+  EXPECT_FALSE(fs::exists(file));
+}
+
 TEST(Campaign, ChoosesTheAdvancesThatFit) {
   Expected<Campaign> campaign = Campaign::plan(test::plate(150, false));
   ASSERT_TRUE(campaign);

@@ -87,6 +87,7 @@ std::string refusal(const fs::path& path) {
 TEST(RecordFile, RefusesWhatIsNoRecord) {
   const fs::path folder = rhexis::test::fresh_folder("record");
   EXPECT_THAT(refusal(folder / "none.h5"), HasSubstr("there is no such file"));
+  EXPECT_THAT(refusal(folder), HasSubstr("not a file"));
   std::ofstream(folder / "text.h5") << "not HDF5 at all";
   EXPECT_THAT(refusal(folder / "text.h5"), HasSubstr("text.h5: not an HDF5 file"));
   {

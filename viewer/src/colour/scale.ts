@@ -43,6 +43,18 @@ export interface Scale {
   readonly most: number;
 }
 
+/** From a value to the place of its colour in the ramp: (value - first) * perUnit. */
+export interface Mapping {
+  readonly first: number;
+  readonly perUnit: number;
+}
+
+/** Where nothing has a value every width of the scale is as good: zero has the colour of zero. */
+export function mappingOf(kind: FieldKind, scale: Scale): Mapping {
+  const top = scale.top > 0 ? scale.top : 1;
+  return kind.signed ? { first: -top, perUnit: 1 / (2 * top) } : { first: 0, perUnit: 1 / top };
+}
+
 export const kEmptyScale: Scale = { top: 0, least: 0, most: 0 };
 
 /** `before`: of the same field a moment ago, or kEmptyScale. */

@@ -37,7 +37,7 @@ export class ForcePlot {
         axes: [
           // Time from now, which stands at the right.
           { ...axis(), size: 28, values: (plot, ticks) => ticks.map((t) => `${Math.round(t - (plot.scales["x"]?.max ?? 0)) || 0} s`), splits: (plot) => this.seconds(plot) },
-          { ...axis(), size: 38, values: (_, ticks) => ticks.map((n) => String(Math.round(n * 100) / 100)) },
+          { ...axis(), size: 48, values: (_, ticks) => ticks.map((n) => `${Math.round(n * 100) / 100} N`) },
         ],
         series: [{}, thin("x", "--x"), thin("y", "--y"), thin("z", "--z"), { label: "force", stroke: cssColour("--force"), width: 2, points: { show: false } }, { label: "compared", stroke: cssColour("--compared"), width: 2, dash: [6, 3], points: { show: false } }],
         hooks: { drawClear: [(plot) => this.drawMarks(plot)] },

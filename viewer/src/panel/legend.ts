@@ -28,8 +28,11 @@ export class Legend {
       const isCut = (k === 2 && scale.most > scale.top) || (k === 0 && scale.least < first);
       const sign = isCut ? (k === 2 ? "≥ " : "≤ ") : "";
       const tick = this.ticks[k];
-      if (tick !== undefined) setText(tick, sign + significant(value * unit.factor, 2));
+      // A scale without a width has one value.
+      const text = scale.top > 0 || k === (kind.signed ? 1 : 0) ? significant(value * unit.factor, 2) : "";
+      if (tick !== undefined) setText(tick, sign + text);
     });
-    setText(this.extremes, `in all ${significant(scale.least * unit.factor)} to ${significant(scale.most * unit.factor)}`);
+    if (scale.least === 0 && scale.most === 0) setText(this.extremes, "zero everywhere");
+    else setText(this.extremes, `in all ${significant(scale.least * unit.factor)} to ${significant(scale.most * unit.factor)}`);
   }
 }

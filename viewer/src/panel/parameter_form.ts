@@ -5,6 +5,7 @@ import {
   hasSlider,
   labelOf,
   rangeText,
+  unitText,
   type Declaration,
 } from "../session/declarations";
 import { byId, make, setText } from "./dom";
@@ -63,7 +64,7 @@ export class ParameterForm {
     const range = rangeText(declaration);
     const title = [declaration.doc.replaceAll("`", ""), range === "" ? "" : `Range: ${range}.`].filter((text) => text !== "").join(" ");
     const label = make("label", { htmlFor: id, textContent: labelOf(declaration), title });
-    const unit = make("span", { className: "unit", textContent: declaration.unit });
+    const unit = make("span", { className: "unit", textContent: unitText(declaration.unit) });
     const row = make("div", { className: "parameter", title }, label, input, unit);
     const slider = hasSlider(declaration) ? sliderFor(declaration) : null;
     if (slider !== null) row.append(slider);

@@ -12,7 +12,6 @@ const kStepTicks = 10;
 /** The buttons below the picture, and what the keys of the same meaning do. */
 export class Transport {
   private readonly bar = byId("transport", HTMLDivElement);
-  private state: State | null = null;
   private hasScript = false;
   private readonly script = this.add("script", "Run script", "Space", () => this.toggleScript());
   private readonly pause = this.add("pause", "Pause", "P", () => this.togglePause());
@@ -21,11 +20,15 @@ export class Transport {
   private readonly reset = this.add("reset", "Reset", "R", () => this.send({ kind: "reset" }));
   private readonly record = this.add("record", "Record", "", () => this.toggleRecord());
 
-  constructor(private readonly send: (command: Command) => void) {}
+  /** `state`: the newest, which a key that follows on another has to go by; what is drawn comes a picture later. */
+  constructor(
+    private readonly send: (command: Command) => void,
+    private readonly state: () => State | null,
+  ) {}
 
-  /** `mayAct`: connected, and this page has the hand. `script`: the scene has pulls. */
-  show(state: State | null, mayAct: boolean, script: boolean): void {
-    this.state = state;
+  /** `mayAct`: connected, and this page has the hand. `script`: the scene has pulls. `mayUndo`: something has torn. */
+  show(mayAct: boolean, script: boolean, mayUndo: boolean): void {
+    const state = this.state();
     this.hasScript = script;
     const isPaused = state?.paused ?? false;
     setText(this.script.label, state?.scripted ? "Stop script" : "Run script");
@@ -37,7 +40,7 @@ export class Transport {
     for (const control of [this.pause, this.undo, this.reset, this.record]) control.button.disabled = !mayAct;
     this.script.button.disabled = !mayAct || !script;
     this.step.button.disabled = !mayAct || !isPaused;
-    this.undo.button.disabled = !mayAct || (state?.advances ?? 0) === 0;
+    this.undo.button.disabled = !mayAct || !mayUndo;
   }
 
   set isHidden(on: boolean) {
@@ -45,19 +48,19 @@ export class Transport {
   }
 
   toggleScript(): void {
-    if (this.hasScript) this.send({ kind: "script", on: !(this.state?.scripted ?? false) });
+    if (this.hasScript) this.send({ kind: "script", on: !(this.state()?.scripted ?? false) });
   }
 
   togglePause(): void {
-    this.send({ kind: "pause", on: !(this.state?.paused ?? false) });
+    this.send({ kind: "pause", on: !(this.state()?.paused ?? false) });
   }
 
   stepOn(): void {
-    if (this.state?.paused) this.send({ kind: "step", ticks: kStepTicks });
+    if (this.state()?.paused) this.send({ kind: "step", ticks: kStepTicks });
   }
 
   private toggleRecord(): void {
-    this.send({ kind: "record", on: !(this.state?.recording ?? false) });
+    this.send({ kind: "record", on: !(this.state()?.recording ?? false) });
   }
 
   private add(name: string, text: string, key: string, act: () => void): Control {

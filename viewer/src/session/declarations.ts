@@ -84,9 +84,12 @@ export function hasSlider(declaration: Declaration): boolean {
   return declaration.max > declaration.min && largest <= 1000;
 }
 
+/** "kg/m³" of "kg/m3". */
+export const unitText = (unit: string): string => unit.replaceAll(/m2\b/g, "m²").replaceAll(/m3\b/g, "m³").replaceAll(/s2\b/g, "s²");
+
 /** "0 to 0.5", "at least 3 Pa"; empty for every number. */
 export function rangeText(declaration: Declaration): string {
-  const unit = declaration.unit === "" ? "" : ` ${declaration.unit}`;
+  const unit = declaration.unit === "" ? "" : ` ${unitText(declaration.unit)}`;
   const { min, max } = declaration;
   if (isBounded(declaration)) return `${significant(min)} to ${significant(max)}${unit}`;
   if (Number.isFinite(min)) return `at least ${significant(min)}${unit}`;

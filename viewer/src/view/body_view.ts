@@ -1,7 +1,7 @@
 import * as THREE from "three";
 
 import { bytesOf } from "../colour/ramp";
-import { rampOf, type FieldKind, type Scale } from "../colour/scale";
+import { mappingOf, rampOf, type FieldKind, type Scale } from "../colour/scale";
 import { cornerNormals, faceNormals, listCorners, type CornerLists } from "../body/normals";
 import type { Surface } from "../body/surface";
 import type { Palette } from "./palette";
@@ -121,9 +121,8 @@ export class BodyView {
       this.ramp.needsUpdate = true;
       this.rampKind = kind;
     }
-    const first = kind.signed ? -scale.top : 0;
-    const span = scale.top - first;
-    (this.material.uniforms["scale"]!.value as THREE.Vector2).set(first, span > 0 ? 1 / span : 0);
+    const { first, perUnit } = mappingOf(kind, scale);
+    (this.material.uniforms["scale"]!.value as THREE.Vector2).set(first, perUnit);
   }
 
   private shape(surface: Surface): void {
