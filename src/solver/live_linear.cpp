@@ -21,7 +21,7 @@ constexpr double kPatchReduction = 1e-4;
 /// The tangents of the tets of one state, with their pressures eliminated by D.
 class TetTangents final : public linalg::ElementSource {
  public:
-  TetTangents(const model::Model& model, const linalg::FreeDofs& free, const model::State& state) : model_(model) {
+  TetTangents(const model::Model& model, const linalg::FreeDofs& free, const model::State& state) {
     const auto scratch = model.make_scratch();
     model.tet_tangents(state, *scratch, blocks_, coupling_);
     const std::vector<std::int32_t>& connectivity = model.space().connectivity;
@@ -62,7 +62,6 @@ class TetTangents final : public linalg::ElementSource {
   unsigned free_components(std::int32_t node) const override { return free_[static_cast<std::size_t>(node)]; }
 
  private:
-  const model::Model& model_;
   std::vector<double> blocks_, coupling_;
   std::vector<std::array<std::int32_t, 4>> nodes_;
   std::vector<unsigned> free_;  ///< per node
