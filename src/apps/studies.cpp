@@ -169,7 +169,7 @@ std::span<const Study> all_studies() {
         "iteration_ratio"},
        timing_options},
       {"restructuring",
-       "What an advance of a crack costs, by five ways",
+       "What an advance of a crack costs, by six ways",
        "--nodes 506 1270 5000 --mode slow-pull",
        {"nodes", "mode", "way", "advances", "ms_per_advance", "ms_median", "ms_most", "ms_per_tet", "sparse_over_this"},
        restructuring_options},

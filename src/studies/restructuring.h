@@ -25,7 +25,11 @@ inline constexpr std::array<std::string_view, 2> kTearModes{"imposed", "slow-pul
 /// exact: all that the program does: re-meshing, local object, and the exact response of the whole torn body, as it is
 /// waited for while the next window is made ready in the background.
 /// exact-all-work: the same with nothing in the background: what the background does is in the time.
-inline constexpr std::array<std::string_view, 5> kWays{"dense-inverse", "sparse", "local", "exact", "exact-all-work"};
+/// recorded: all that the program does with `response = "recorded"`: re-meshing, the local object, and the look-up of
+/// the nearest operator and of the forces around the crack (docs/recorded-response.md), in place of any factor of the
+/// body. Of imposed advances alone, which a record has; of plates of up to kDenseNodes.
+inline constexpr std::array<std::string_view, 6> kWays{"dense-inverse", "sparse",         "local",
+                                                       "exact",         "exact-all-work", "recorded"};
 
 /// A dense inverse of this many nodes holds 0.2 GB and takes seconds.
 inline constexpr int kDenseNodes = 1300;

@@ -1,7 +1,10 @@
 #include "studies/restructuring_case.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 
 #include <fmt/format.h>
@@ -9,6 +12,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "fracture/local_object.h"
+#include "record/build/campaign.h"
 #include "studies/full_solve.h"
 
 namespace rhexis::studies {
@@ -134,6 +138,45 @@ Expected<void> RestructuringCase::follow(Follower& follower, const TornOn& torn,
   return {};
 }
 
+namespace {
+
+/// Straight on and to both sides, by the two advances of the thesis: what is looked up does not depend on how many
+/// directions there are.
+Expected<response::SharedRecord> make_record(const StudyPlate& plate) {
+  record::build::CampaignRequest request{
+      .mesh = plate.mesh, .elastic = plate.settings.body, .crack = plate.cracks.front().line};
+  request.parameters.directions = 3;
+  request.parameters.advances = kImposedAdvances;
+  request.parameters.lengths = {kImposedLength};
+  const Expected<record::build::Campaign> campaign = record::build::Campaign::plan(std::move(request));
+  if (!campaign) return fail(campaign.error());
+  const std::filesystem::path file = std::filesystem::temp_directory_path() /
+                                     fmt::format("rhexis-restructuring-{}-{}.h5", ::getpid(), plate.mesh.node_count());
+  const Expected<record::build::CampaignReport> made = campaign->run(file, {}, nullptr);
+  if (!made) return fail(made.error());
+  Expected<response::SharedRecord> read = record::store::LoadedRecord::read(file);
+  std::error_code code;
+  std::filesystem::remove(file, code);
+  return read;
+}
+
+}  // namespace
+
+Expected<void> RestructuringCase::tear_recorded() {
+  if (!record_) {
+    Expected<response::SharedRecord> made = make_record(plate_);
+    if (!made) return fail(std::move(made.error()));
+    record_ = std::move(*made);
+  }
+  StudyPlate plate = plate_;
+  plate.settings.record = record_;
+  Expected<TornOn> torn = TornOn::start(plate, mode_, false);
+  if (!torn) return fail(std::move(torn.error()));
+  while (!torn->at_end()) torn->tear_on(kBlock);
+  keep_exact("recorded", *torn, 0);
+  return {};
+}
+
 Expected<bool> RestructuringCase::run_round(const std::function<bool(double)>& told) {
   // Both exact ways take turns, when both are wanted.
   ++round_;
@@ -152,6 +195,10 @@ Expected<bool> RestructuringCase::run_round(const std::function<bool(double)>& t
       if (Expected<void> done = follow(follower, *torn, advance); !done) return fail(std::move(done.error()));
     }
     if (!told(torn->part_done())) return false;
+  }
+  if (wants("recorded") && mode_ == TearMode::imposed &&
+      plate_.mesh.node_count() <= static_cast<std::size_t>(kDenseNodes)) {
+    if (Expected<void> done = tear_recorded(); !done) return fail(std::move(done.error()));
   }
   return true;
 }

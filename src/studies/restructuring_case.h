@@ -50,6 +50,8 @@ class RestructuringCase {
   /// Such a way is due at this advance; from what it took it follows when it is due again.
   [[nodiscard]] bool is_due(std::string_view way, std::size_t advance) const;
   void keep(std::string_view way, Restructured what);
+  /// The same advances by a session whose response is recorded. Errors: of the disk, on which the record is made.
+  Expected<void> tear_recorded();
   void keep_exact(std::string_view way, const TornOn& torn, std::size_t from);
   Expected<void> follow(Follower& follower, const TornOn& torn, std::size_t advance);
   /// Mean of "sparse" over that of the way, in the rounds that have both: side by side, since machines drift.
@@ -58,6 +60,7 @@ class RestructuringCase {
   using ByWay = std::map<std::string, std::vector<Restructured>, std::less<>>;
   const StudyPlate& plate_;
   TearMode mode_;
+  response::SharedRecord record_;  ///< of straight advances, made when it is first needed
   std::vector<std::string> ways_;
   int round_ = -1;
   ByWay done_;

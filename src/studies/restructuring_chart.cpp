@@ -21,7 +21,7 @@ struct Line {
 
 /// What depends on the mode is drawn for both, dashed where it is imposed; a full solve does not, and is drawn for the
 /// slow pull, whose bodies are more.
-constexpr std::array<Line, 7> kLines{{
+constexpr std::array<Line, 8> kLines{{
     {"slow-pull", "dense-inverse", "whole body, dense inverse", Symbol::circle, 1},
     {"slow-pull", "sparse", "whole body, sparse factor", Symbol::square, 4},
     {"slow-pull", "local", "local object, slow pull", Symbol::triangle, 2},
@@ -29,6 +29,7 @@ constexpr std::array<Line, 7> kLines{{
     {"slow-pull", "exact-all-work", "exact, all work waited for", Symbol::diamond, 3},
     {"slow-pull", "exact", "exact, slow pull", Symbol::diamond, 0},
     {"imposed", "exact", "exact, 40.3 mm", Symbol::diamond, 0},
+    {"imposed", "recorded", "recorded, 40.3 mm", Symbol::square, 3},
 }};
 
 }  // namespace
