@@ -31,7 +31,7 @@ page_sources := $(shell find viewer schema -name node_modules -prune -o -type f 
 $(page): viewer/node_modules/.package-lock.json $(page_sources)
 	@cd viewer && npm run --silent build && touch ../$(page) && echo "built build/release/share/rhexis/page"
 
-viewer: ## the page of play and replay: build/release/share/rhexis/page
+viewer: ## the page of play and replay, and the script of reports: build/release/share/rhexis
 	@tools/install viewer
 	@$(MAKE) --no-print-directory --silent $(page)
 
