@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "fuzz/record_parts.h"
 #include "fuzz/recording_parts.h"
+#include "record/store/record_reader.h"
 #include "session/recording_head.h"
 #include "session/recording_scene.h"
 #include "wire/frame.h"
@@ -95,6 +97,56 @@ fuzz::RecordingParts recording() {
   return parts;
 }
 
+/// A body before its one advance and after it, in three directions: two tets, three grasp points, four unknowns.
+fuzz::RecordParts record_parts() {
+  record::store::Parameters parameters;
+  parameters.advances = 1;
+  parameters.directions = 3;
+  parameters.pull_directions = 4;
+  fuzz::RecordParts parts;
+  parts.advances = {parameters.advances};
+  parts.pull_length = {parameters.pull_length};
+  parts.directions = direction_angles(parameters);
+  parts.lengths = parameters.lengths;
+  parts.pull_directions = pull_angles(parameters);
+  parts.frame = {0, 1, 0, 0, 0, 1, 1, 0, 0};
+  parts.nodes = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1};
+  parts.tets = {0, 1, 2, 3, 1, 2, 3, 4};
+  parts.points = {1, 2, 4};
+  parts.edges = {0, 1, 1, 2};
+  parts.dof = {3, 4, 5, 6};
+  parts.start = {0, 2, 4, 5, 6};
+  parts.row = {0, 2, 1, 3, 2, 3};
+  const auto topologies = static_cast<std::size_t>(record::store::Numbering(parameters).count());
+  parts.flags.assign(topologies, 0);
+  parts.in_solve.assign(topologies * parts.points.size(), 1);
+  parts.stiffness.assign(topologies * parts.points.size() * 6, 1e3);
+  parts.compliance.assign(topologies * parts.edges.size() / 2 * 9, 1e-3);
+  parts.rest.assign(topologies * parts.nodes.size(), 0.01);
+  parts.factor.assign(topologies * parts.row.size(), 0.5);
+  parts.moved_start = {0, 0, 1, 3, 3};
+  parts.moved_node = {2, 1, 4};
+  parts.moved_to.assign(3 * parts.moved_node.size(), 0.1);
+  parts.gone_start = {0, 0, 0, 1, 1};
+  parts.gone_tet = {1};
+  parts.frozen_start = {0, 0, 0, 0, 1};
+  parts.frozen_tet = {0};
+  return parts;
+}
+
+/// A seed that is refused would reach nothing.
+void check_record(const std::filesystem::path& path) {
+  const Expected<record::store::RecordFile> file = record::store::RecordFile::open(path);
+  RHEXIS_CHECK(file && file->read_record(), "{}", file ? "a list" : file.error().message());
+  for (int t = 0; t < file->topologies(); ++t) RHEXIS_CHECK(file->read_topology(t).has_value(), "topology {}", t);
+}
+
+/// Writes a seed: `first` chooses how its target takes it.
+void write_seed(const std::filesystem::path& path, std::uint8_t first, Bytes bytes) {
+  bytes.insert(bytes.begin(), first);
+  write(path, bytes);
+}
+
 }  // namespace
 
 int main(int count, char** words) {
@@ -105,13 +157,17 @@ int main(int count, char** words) {
   const std::filesystem::path corpus = words[1];
   for (const wire::SharedMessage& frame : frames())
     write(corpus / "frame" / wire::EnumNamePayload(frame->kind), frame->bytes);
-  Bytes parts = fuzz::input_of(recording());
-  parts.insert(parts.begin(), 1);
-  write(corpus / "recording/parts", parts);
-  const std::filesystem::path file = corpus / "recording/file";
+  for (const char* folder : {"recording", "record"}) std::filesystem::create_directories(corpus / folder);
+  std::filesystem::path file = corpus / "recording/file";
   fuzz::write_recording(file, recording());
-  Bytes whole = read(file);
-  whole.insert(whole.begin(), 0);
-  write(file, whole);
+  write_seed(file, 0, read(file));
+  write_seed(corpus / "recording/parts", 1, fuzz::input_of(recording()));
+
+  file = corpus / "record/file";
+  fuzz::write_record(file, record_parts(), false);
+  check_record(file);
+  write_seed(file, 0, read(file));
+  write_seed(corpus / "record/parts", 1, fuzz::input_of(record_parts()));
+  write_seed(corpus / "record/parts_single", 3, fuzz::input_of(record_parts()));
   return 0;
 }

@@ -2,11 +2,7 @@
 // good file holds, so that mutations reach what our own reader does with it. Nothing is computed again: that is a whole
 // interaction.
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 
 #include "fuzz/recording_parts.h"
 #include "session/recording_file.h"
@@ -52,16 +48,9 @@ void read_recording(const std::string& path) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size == 0) return 0;
-  const std::span<const std::uint8_t> input(data + 1, size - 1);
-  const std::string path = std::filesystem::temp_directory_path() / ("rhexis_fuzz" + std::to_string(::getpid()));
-  if ((data[0] & 1) != 0) {
+  const auto write = [](const std::string& path, std::uint8_t, std::span<const std::uint8_t> input) {
     fuzz::write_recording(path, fuzz::parts_of(input));
-  } else {
-    std::ofstream(path, std::ios::binary)
-        .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
-  }
-  read_recording(path);
-  std::filesystem::remove(path);  // not written over: HDF5 may keep open what it refuses
+  };
+  fuzz::read_as_file({data, size}, write, read_recording);
   return 0;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/check.h"
+#include "fuzz/parts.h"
 #include "session/recording_tables.h"
 
 namespace rhexis::fuzz {
@@ -37,19 +38,15 @@ void each_part(Parts& parts, Use&& use) {
   use(table::kBytes, parts.bytes);
 }
 
-/// Each part behind its size in bytes (16 bits, little-endian); the last one, `bytes`, is all that is left.
+/// `bytes`, the last one, is all that is left.
 inline RecordingParts parts_of(std::span<const std::uint8_t> input) {
   RecordingParts parts;
   each_part(parts, [&]<class Row>(const char* name, std::vector<Row>& rows) {
-    std::size_t size = input.size();
-    if (name != session::table::kBytes) {
-      if (input.size() < 2) return;
-      size = std::min<std::size_t>(input[0] | (input[1] << 8), input.size() - 2);
-      input = input.subspan(2);
+    if (name == session::table::kBytes) {
+      take_rest(input, rows);
+    } else {
+      take_part(input, rows);
     }
-    rows.resize(size / sizeof(Row));
-    if (!rows.empty()) std::memcpy(rows.data(), input.data(), rows.size() * sizeof(Row));
-    input = input.subspan(size);
   });
   return parts;
 }
@@ -57,11 +54,11 @@ inline RecordingParts parts_of(std::span<const std::uint8_t> input) {
 inline std::vector<std::uint8_t> input_of(const RecordingParts& parts) {
   std::vector<std::uint8_t> input;
   each_part(parts, [&]<class Row>(const char* name, const std::vector<Row>& rows) {
-    const std::size_t size = rows.size() * sizeof(Row);
-    const auto* begin = reinterpret_cast<const std::uint8_t*>(rows.data());
-    if (name != session::table::kBytes)
-      for (const std::size_t byte : {size & 255, size >> 8}) input.push_back(static_cast<std::uint8_t>(byte));
-    input.insert(input.end(), begin, begin + size);
+    if (name == session::table::kBytes) {
+      add_rest(rows, input);
+    } else {
+      add_part(rows, input);
+    }
   });
   return input;
 }

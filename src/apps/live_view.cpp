@@ -12,6 +12,7 @@
 
 #include <boost/asio/ip/address.hpp>
 
+#include "apps/beside_program.h"
 #include "apps/interrupt.h"
 #include "server/gate.h"
 
@@ -19,13 +20,6 @@ namespace rhexis::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// As `make viewer` lays it beside the program.
-fs::path page_beside_program() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  return program.parent_path().parent_path() / "share/rhexis/page";
-}
 
 /// It stands in an address and in a cookie, and is quoted in neither.
 bool is_plain(const std::string& token) {
@@ -59,7 +53,7 @@ Expected<server::ServerSettings> settings_of(const LiveViewOptions& options) {
     return fail("the token has characters that an address cannot have as they are",
                 "letters, digits and any of - . _ ~", "--token");
   if (settings.token.empty() && !is_loopback(options.address)) settings.token = server::make_token();
-  settings.page = options.page.empty() ? page_beside_program() : fs::path(options.page);
+  settings.page = options.page.empty() ? share_folder() / "page" : fs::path(options.page);
   settings.recordings = options.recordings;
   std::error_code error;
   fs::create_directories(settings.recordings, error);

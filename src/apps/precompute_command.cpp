@@ -9,6 +9,7 @@
 #include "record/build/campaign.h"
 #include "record/store/record_writer.h"
 #include "scene/tear_problem.h"
+#include "session/scene_record.h"
 
 namespace rhexis::apps {
 namespace {
@@ -28,13 +29,8 @@ constexpr double kQuietSeconds = 1.0;
 
 Expected<Campaign> plan(const scene::TearProblem& problem, const PrecomputeOptions& options) {
   const scene::CrackSettings& crack = problem.cracks.front();
-  Expected<Campaign> campaign = Campaign::plan({.mesh = problem.mesh,
-                                                .elastic = problem.body,
-                                                .crack = crack.line,
-                                                .parameters = problem.record.parameters,
-                                                .single_precision = problem.record.single_precision,
-                                                .program = std::string("rhexis ") + RHEXIS_VERSION,
-                                                .title = problem.title});
+  Expected<Campaign> campaign =
+      Campaign::plan(session::record_request(problem, std::string("rhexis ") + RHEXIS_VERSION));
   if (!campaign) return fail(campaign.error().at(crack.place.file ? *crack.place.file : "", crack.place.line));
   if (options.memory > 0.0) {
     if (Expected<void> chosen = campaign->choose_advances(1e6 * options.memory); !chosen)

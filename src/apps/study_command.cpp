@@ -1,44 +1,32 @@
-// rhexis study NAME [--out DIR]: one experiment of the two papers, into tables and figures.
+// rhexis study NAME [--out DIR]: one experiment of the two papers, into tables, figures and a report.
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <functional>
 
+#include "apps/beside_program.h"
 #include "apps/command.h"
 #include "apps/interrupt.h"
 #include "apps/progress.h"
-#include "studies/live_study.h"
-#include "studies/reaction_error.h"
-#include "studies/restructuring.h"
-#include "studies/stability_map.h"
+#include "apps/studies.h"
+#include "base/clock.h"
+#include "base/parallel.h"
+#include "studies/report.h"
+#include "studies/reproduction.h"
 
 namespace rhexis::apps {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-
-/// A study is a function from its options to its rows, of which each column of `shown` is for people.
-struct StudyRun {
-  std::string name;
-  std::string out;
-  std::vector<std::string> shown;
-  std::function<Expected<ordered_json>(const studies::StudyFolder&, const studies::Progress&)> run;
-};
-
-std::string cell_text(const ordered_json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_float() && std::isfinite(value.get<double>())) return fmt::format("{:.4g}", value.get<double>());
-  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-  return value.is_number_integer() ? value.dump() : "-";
-}
 
 /// Columns as wide as what stands in them: numbers to the right, words to the left.
 void print_rows(const ordered_json& rows, const std::vector<std::string>& columns) {
   std::vector<std::size_t> width;
   for (const std::string& column : columns) {
     width.push_back(column.size());
-    for (const ordered_json& row : rows) width.back() = std::max(width.back(), cell_text(row.at(column)).size());
+    for (const ordered_json& row : rows)
+      width.back() = std::max(width.back(), studies::cell_text(row.at(column)).size());
   }
   const auto print_line = [&](auto&& cell) {
     std::string line;
@@ -50,148 +38,136 @@ void print_rows(const ordered_json& rows, const std::vector<std::string>& column
     fmt::print("{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
   };
   print_line([](const std::string& column) { return column; });
-  for (const ordered_json& row : rows) print_line([&](const std::string& column) { return cell_text(row.at(column)); });
+  for (const ordered_json& row : rows)
+    print_line([&](const std::string& column) { return studies::cell_text(row.at(column)); });
 }
 
-int run(const StudyRun& study, const Common& common) {
-  const std::filesystem::path out =
-      study.out.empty() ? std::filesystem::path("out") / study.name : std::filesystem::path(study.out);
+/// As `make viewer` lays it beside the program.
+fs::path report_viewer() { return share_folder() / "report" / "report.js"; }
+
+struct Finished {
+  int code = kDone;
+  studies::StudyRun run;
+  ordered_json rows = {};
+};
+
+/// Runs one study into `out`. Errors are reported; `fraction` of the progress is told under the study's name.
+Finished run(const Study& study, const StudyFunction& function, const fs::path& out, std::string command,
+             const Common& common) {
+  Finished finished{.run = {.study = std::string(study.name),
+                            .title = std::string(study.title),
+                            .command = std::move(command),
+                            .threads = thread_count()}};
   const Expected<studies::StudyFolder> folder = studies::StudyFolder::open(out);
-  if (!folder) return report(folder.error());
+  if (!folder) {
+    finished.code = report(folder.error());
+    return finished;
+  }
   bool begun = false;
-  bool stopped = false;
+  const Stopwatch watch;
   Expected<ordered_json> rows;
   {
     const Interrupt interrupt;
     Progress progress(!common.quiet);
-    rows = study.run(*folder, [&](double fraction, std::string_view what) {
+    rows = function(*folder, [&](double fraction, std::string_view what) {
       begun = true;
-      progress.update(fraction, std::string(what));
-      stopped = interrupt.asked();
-      return !stopped;
+      progress.update(fraction, fmt::format("{}: {}", study.name, what));
+      finished.run.stopped = interrupt.asked();
+      return !finished.run.stopped;
     });
   }
+  finished.run.seconds = watch.seconds();
   if (!rows) {
     report(rows.error());
-    return begun ? kFailedComputation : kBadInput;
+    finished.code = begun ? kFailedComputation : kBadInput;
+    return finished;
   }
-  if (common.json) print_json(*rows);
-  if (!common.json && !common.quiet) print_rows(*rows, study.shown);
-  say(common, "results  {}\n", out.string());
-  if (!stopped) return kDone;
+  finished.rows = std::move(*rows);
+  if (const Expected<void> done = studies::write_report(*folder, finished.run, report_viewer()); !done) {
+    report(done.error());
+    finished.code = kFailedComputation;
+    return finished;
+  }
+  if (!finished.run.stopped) return finished;
   fmt::print(stderr, "rhexis: study {}: stopped by Ctrl-C, the tables hold what was measured until then\n", study.name);
-  return kFailedComputation;
+  finished.code = kFailedComputation;
+  return finished;
 }
 
-void add_restructuring(CLI::App& study, const Common& common, int& code) {
-  CLI::App* command = study.add_subcommand("restructuring", "What an advance of a crack costs, by five ways");
-  command->footer("Example: rhexis study restructuring --nodes 506 1270 5000 --mode slow-pull");
-  auto one = std::make_shared<StudyRun>();
-  one->name = "restructuring";
-  one->shown = {"nodes",     "mode",    "way",        "advances",        "ms_per_advance",
-                "ms_median", "ms_most", "ms_per_tet", "sparse_over_this"};
-  auto options = std::make_shared<studies::RestructuringOptions>();
-  command->add_option("--out", one->out, "folder for the tables and figures; out/restructuring unless given");
-  command->add_option("--nodes", options->nodes, "of the plates")->type_name("COUNT")->expected(-1);
-  command->add_option("--mode", options->modes, fmt::format("{}", fmt::join(studies::kTearModes, ", ")))
-      ->type_name("MODE")
-      ->expected(-1);
-  command->add_option("--way", options->ways, fmt::format("{}", fmt::join(studies::kWays, ", ")))
-      ->type_name("WAY")
-      ->expected(-1);
-  command->add_option("--seconds", options->seconds_per_case, "a plate is torn anew from its start for about so long")
-      ->type_name("SECONDS")
-      ->check(CLI::Range(0.0, 3600.0));
-  one->run = [options](const studies::StudyFolder& folder, const studies::Progress& progress) {
-    return studies::run_restructuring(*options, folder, progress);
-  };
-  command->callback([one, &common, &code] { code = run(*one, common); });
+void add_one(CLI::App& parent, const Study& study, const Common& common, int& code) {
+  CLI::App* command = parent.add_subcommand(std::string(study.name), std::string(study.title));
+  command->footer(
+      fmt::format("Example: rhexis study {}{}{}", study.name, study.example.empty() ? "" : " ", study.example));
+  auto out = std::make_shared<std::string>(fmt::format("out/{}", study.name));
+  command->add_option("--out", *out, fmt::format("folder for tables, figures and report; {} unless given", *out));
+  const StudyFunction function = study.with_options(*command);
+  command->callback([&study, function, out, &common, &code] {
+    const Finished finished = run(study, function, *out, command_line(), common);
+    code = finished.code;
+    if (finished.rows.empty()) return;
+    if (common.json) print_json(finished.rows);
+    if (!common.json && !common.quiet) print_rows(finished.rows, study.shown);
+    say(common, "results  {}\nreport   {}\n", *out, (fs::path(*out) / "report.html").string());
+  });
 }
 
-void add_reaction_error(CLI::App& study, const Common& common, int& code) {
-  CLI::App* command = study.add_subcommand("reaction-error", "How far recorded forces are from the exact ones");
-  command->footer("Example: rhexis study reaction-error --advances 1 --step 5");
-  auto one = std::make_shared<StudyRun>();
-  one->name = "reaction-error";
-  one->shown = {"advances",  "way",           "patterns",      "better",      "better_untied",   "mean",
-                "deviation", "mean_relative", "thesis_better", "thesis_mean", "thesis_deviation"};
-  auto options = std::make_shared<studies::ReactionErrorOptions>();
-  command->add_option("--out", one->out, "folder for the tables and figures; out/reaction-error unless given");
-  command->add_option("--nodes", options->nodes, "of the plate")->type_name("COUNT");
-  command->add_option("--advances", options->advances, "1: Table 5.9 of the thesis, 2: Table 5.10")
-      ->type_name("COUNT")
-      ->expected(-1);
-  command->add_option("--spacing", options->spacing, "between recorded cracks")->type_name("DEGREES");
-  command->add_option("--spacings", options->spacings, "that are compared, at one advance")
-      ->type_name("DEGREES")
-      ->expected(-1);
-  command->add_option("--step", options->step, "between the cracks that are asked for")->type_name("DEGREES");
-  one->run = [options](const studies::StudyFolder& folder, const studies::Progress& progress) {
-    return studies::run_reaction_error(*options, folder, progress);
-  };
-  command->callback([one, &common, &code] { code = run(*one, common); });
+/// All of them at their default size, one after the other, each as `rhexis study NAME` runs it.
+int run_all(const fs::path& out, const Common& common) {
+  int worst = kDone;
+  std::vector<studies::StudyRun> runs;
+  ordered_json summary = ordered_json::array();
+  for (const Study& study : all_studies()) {
+    CLI::App defaults;
+    const fs::path folder = out / study.name;
+    const Finished finished = run(study, study.with_options(defaults), folder,
+                                  fmt::format("rhexis study {} --out {}", study.name, folder.string()), common);
+    worst = std::max(worst, finished.code);
+    if (!finished.rows.empty()) runs.push_back(finished.run);
+    summary.push_back({{"study", study.name}, {"seconds", finished.run.seconds}, {"code", finished.code}});
+    say(common, "{:<18} {:8.1f} s  {}\n", study.name, finished.run.seconds,
+        finished.code == kDone ? (folder / "report.html").string() : "not finished");
+    if (const Expected<void> done = studies::write_report_index(out, runs); !done) return report(done.error());
+    if (finished.run.stopped) break;
+  }
+  if (common.json) print_json(summary);
+  say(common, "index    {}\n", (out / "index.html").string());
+  return worst;
 }
 
-void add_haptic_stability(CLI::App& study, const Common& common, int& code) {
-  CLI::App* command = study.add_subcommand("haptic-stability", "Which couplings an emulated haptic device bears");
-  command->footer("Example: rhexis study haptic-stability --delay 0 1 2 --stiffness 500 1000 2000");
-  auto one = std::make_shared<StudyRun>();
-  one->name = "haptic-stability";
-  one->shown = {"stiffness",     "delay_ms",   "over_bound",    "rests_free",
-                "shake_mm_free", "rests_kept", "shake_mm_kept", "gain"};
-  auto options = std::make_shared<studies::StabilityOptions>();
-  command->add_option("--out", one->out, "folder for the table and figure; out/haptic-stability unless given");
-  command->add_option("--stiffness", options->stiffness, "N/m, of the coupling")->type_name("N/M")->expected(-1);
-  command->add_option("--damping", options->damping, "N s/m, of the coupling")->type_name("NS/M");
-  command->add_option("--delay", options->delay, "ms, whole ones, of the force")->type_name("MS")->expected(-1);
-  command->add_option("--resolution", options->device.resolution, "m, of the position; 0: exact")->type_name("M");
-  command->add_option("--mass", options->device.mass, "kg, of device and finger")->type_name("KG");
-  command->add_option("--hand-damping", options->device.hand_damping, "N s/m, of the hand")->type_name("NS/M");
-  command->add_option("--seconds", options->seconds, "of each run")
-      ->type_name("SECONDS")
-      ->check(CLI::Range(1.2, 600.0));
-  one->run = [options](const studies::StudyFolder& folder, const studies::Progress& progress) {
-    return studies::run_stability_map(*options, folder, progress);
-  };
-  command->callback([one, &common, &code] { code = run(*one, common); });
+void add_all(CLI::App& parent, const Common& common, int& code) {
+  CLI::App* command = parent.add_subcommand("all", "All studies at their default size, with an index of the reports");
+  command->footer("Example: rhexis study all --out out/studies");
+  auto out = std::make_shared<std::string>("out/studies");
+  command->add_option("--out", *out, "folder for a folder a study; out/studies unless given");
+  command->callback([out, &common, &code] { code = run_all(*out, common); });
 }
 
-void add_live(CLI::App& study, const Common& common, int& code) {
+/// The page of docs/reproduction.md, on stdout.
+void add_reproduction(CLI::App& parent, int& code) {
   CLI::App* command =
-      study.add_subcommand("live", "How punctual a live session is: haptic loop, laws, pictures of its clients");
-  command->footer("Example: rhexis study live --seconds 60 --nodes 5000");
-  auto one = std::make_shared<StudyRun>();
-  one->name = "live";
-  one->shown = {"measure", "value", "unit", "note"};
-  auto options = std::make_shared<studies::LiveOptions>();
-  command->add_option("--out", one->out, "folder for the tables and figures; out/live unless given");
-  command->add_option("--seconds", options->seconds, "to run; 600 unless given")
-      ->type_name("SECONDS")
-      ->check(CLI::Range(1.0, 86400.0));
-  command->add_option("--nodes", options->nodes, "of the plate; 20000 unless given")
-      ->type_name("COUNT")
-      ->check(CLI::Range(100, 1'000'000));
-  command->add_option("--clients", options->clients, "that watch; 3 unless given")
-      ->type_name("COUNT")
-      ->check(CLI::Range(1, 16));
-  command->add_option("--device", options->device, "script or emulator; emulator unless given")->type_name("NAME");
-  command->add_option("--priority", options->priority, "of the haptic loop under SCHED_FIFO; 80 unless given, 0: none")
-      ->type_name("PRIORITY")
-      ->check(CLI::Range(0, 99));
-  one->run = [options](const studies::StudyFolder& folder, const studies::Progress& progress) {
-    return studies::run_live_study(*options, folder, progress);
-  };
-  command->callback([one, &common, &code] { code = run(*one, common); });
+      parent.add_subcommand("reproduction", "Print every published number beside ours, from what studies wrote");
+  command->footer("Example: rhexis study reproduction out/studies > reproduction.md");
+  auto folder = std::make_shared<std::string>("out/studies");
+  command->add_option("folder", *folder, "of NAME/study.json or NAME.json; out/studies unless given");
+  command->callback([folder, &code] {
+    const Expected<std::string> page = studies::reproduction_markdown(*folder);
+    if (!page) {
+      code = report(page.error());
+      return;
+    }
+    fmt::print("{}", *page);
+  });
 }
 
 }  // namespace
 
 void add_study(CLI::App& app, const Common& common, int& code) {
-  CLI::App* study = app.add_subcommand("study", "The experiments of the papers, into tables and figures");
-  study->footer("Example: rhexis study restructuring --out out/restructuring");
-  study->require_subcommand(1);
-  for (const auto add : {add_restructuring, add_reaction_error, add_haptic_stability, add_live})
-    add(*study, common, code);
+  CLI::App* parent = app.add_subcommand("study", "The experiments of the papers, into tables, figures and reports");
+  parent->footer("Example: rhexis study identification --out out/identification");
+  parent->require_subcommand(1);
+  for (const Study& study : all_studies()) add_one(*parent, study, common, code);
+  add_all(*parent, common, code);
+  add_reproduction(*parent, code);
 }
 
 }  // namespace rhexis::apps

@@ -8,6 +8,7 @@
 #include "apps/tear_output.h"
 #include "base/clock.h"
 #include "scene/tear_problem.h"
+#include "session/scene_record.h"
 #include "session/start.h"
 #include "session/tear_session.h"
 
@@ -31,6 +32,7 @@ class Script {
       const auto mode = pull.push ? response::ContactMode::push : response::ContactMode::hold;
       if (const Expected<void> holds = tear_.grasp(pull.at, mode); !holds)
         return fmt::format("the pull of {}: {}", pull.place.describe(), holds.error().message());
+      say_what_the_record_lacks();
       const int moving = ticks_of(pull.seconds);
       const int all = moving + ticks_of(pull.hold);
       for (int k = 1; k <= all; ++k) {
@@ -55,6 +57,7 @@ class Script {
     const session::TickReport report = tear_.tick(hand, [&](const session::AdvanceRecord& advance) {
       if (written) written = output_.write_topology(tear_, time);
       output_.note_force(advance.force_before);
+      say_what_the_record_lacks();
       progress.update(static_cast<double>(tick_) / ticks_,
                       fmt::format("{:.3f} s: advance {}, {:.1f} mm, {} pieces", time, tear_.advances().size(),
                                   1e3 * advance.length, advance.pieces));
@@ -66,11 +69,23 @@ class Script {
     return report.trouble;
   }
 
+  /// Each thing once.
+  void say_what_the_record_lacks() {
+    const std::optional<response::RecordUse> use = tear_.record_use();
+    if (!use) return;
+    for (const std::string& remark : session::remarks_on(*use, said_))
+      spdlog::warn("{:.3f} s: {}", 1e-3 * tick_, remark);
+    said_.outside = said_.outside || use->outside;
+    said_.past_last = said_.past_last || use->past_last;
+    said_.torn_off = said_.torn_off || use->torn_off;
+  }
+
   const scene::TearProblem& problem_;
   TearSession& tear_;
   TearOutput& output_;
   int ticks_ = 0;
   int tick_ = 0;
+  response::RecordUse said_;
 };
 
 int tear(const SceneOptions& options, const Common& common) {

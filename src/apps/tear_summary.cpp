@@ -13,6 +13,15 @@ ordered_json points_json(const std::vector<Vec3>& points) {
   return list;
 }
 
+/// null: the response has no record.
+ordered_json record_json(const std::optional<response::RecordUse>& use) {
+  if (!use) return nullptr;
+  return {{"topology", use->topology},
+          {"outside", use->outside},
+          {"past_last", use->past_last},
+          {"torn_off", use->torn_off}};
+}
+
 ordered_json advance_json(const session::AdvanceRecord& advance) {
   return {{"topology", advance.topology},
           {"time", 1e-3 * advance.tick},
@@ -30,6 +39,7 @@ ordered_json advance_json(const session::AdvanceRecord& advance) {
           {"pieces", advance.pieces},
           {"finished", advance.finished},
           {"crack_area", advance.crack_area},
+          {"record", record_json(advance.record)},
           {"force_before", vector_json(advance.force_before)},
           {"force_after", vector_json(advance.force_after)},
           {"milliseconds",

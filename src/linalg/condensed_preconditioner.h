@@ -14,10 +14,7 @@
 ///     E ~ (E W) (W^T E W)^-1 (E W)^T,       P~ = P + V G^-1 V^T,   V = B E W,  G = W^T E W,
 ///     P~^-1 = P^-1 - P^-1 V (G + V^T P^-1 V)^-1 V^T P^-1,
 ///
-/// Nystroem's approximation, exact on W. E W and G depend on C alone and stay while C does; P^-1 V costs k solves with
-/// many right-hand sides per factorisation.
-
-#include <Eigen/Cholesky>
+/// Nystroem's approximation, exact on W (pressure_patches.h).
 
 #include <cstddef>
 #include <cstdint>
@@ -25,6 +22,7 @@
 #include <vector>
 
 #include "linalg/cholesky_factor.h"
+#include "linalg/pressure_patches.h"
 #include "linalg/saddle_matrix.h"
 
 namespace rhexis::linalg {
@@ -33,32 +31,26 @@ class CondensedPreconditioner {
  public:
   /// For the patterns of K, over the free dofs.
   CholeskyOutcome analyse(const SaddleMatrix& K, const FreeDofs& free);
-  /// Takes C and its factor: D, patches, E W, G. Again whenever C changes. A and B of K set the weight alone.
+  /// Takes C and its factor: D and the patches. Again whenever C changes. A and B of K set the weight alone.
   void set_c(const SaddleMatrix& K, CholeskyFactor& c_factor);
   /// Takes A and B. Raises the diagonal when P is not positive definite, which A may cause while S is sound.
   CholeskyOutcome factor(const SaddleMatrix& K, const FreeDofs& free);
   /// z = P~^-1 r; zero on held dofs.
   void solve(const VectorX& r, VectorX& z);
 
-  [[nodiscard]] Eigen::Index patches() const { return smooth_.cols(); }
+  [[nodiscard]] Eigen::Index patches() const { return patches_.count(); }
   [[nodiscard]] double shift() const { return shift_; }
   [[nodiscard]] std::size_t memory_bytes() const;
 
  private:
   void assemble(const SaddleMatrix& K);
-  void correct(const SaddleMatrix& K, const FreeDofs& free);
 
   SymmetricBlockMatrix P_;
   std::vector<std::int32_t> a_block_;     ///< per block of A, its block in P; empty: the patterns are one
   std::vector<std::int32_t> pair_block_;  ///< per pair of nodes of a pressure, row by row, its block in P
   CholeskyFactor factor_;
-  VectorX d_;  ///< the diagonal of D
+  PressurePatches patches_;
   double shift_ = 0.0;
-  Eigen::MatrixXd smooth_;              ///< E W, m x k
-  Eigen::MatrixXd G_;                   ///< W^T E W, k x k
-  Eigen::MatrixXd V_;                   ///< P^-1 V, 3n x k
-  Eigen::LLT<Eigen::MatrixXd> coarse_;  ///< of G + V^T P^-1 V
-  VectorX small_;                       ///< k
 };
 
 }  // namespace rhexis::linalg

@@ -28,6 +28,19 @@ Direction direct(const ComponentTree& tree, std::int32_t last) {
     if (!tree.holds(c, last)) out.order.push_back(c);
   }
   for (std::int32_t c = tree.root(); c >= 0; c = out.next[at(c)]) out.order.push_back(c);
+
+  std::vector<std::int32_t> depth(out.order.size(), 0);
+  std::int32_t deepest = 0;
+  for (auto c = out.order.rbegin(); c != out.order.rend(); ++c) {
+    if (out.next[at(*c)] >= 0) depth[at(*c)] = depth[at(out.next[at(*c)])] + 1;
+    deepest = std::max(deepest, depth[at(*c)]);
+  }
+  out.level_start.assign(at(deepest) + 2, 0);
+  for (const std::int32_t d : depth) ++out.level_start[at(d) + 1];
+  for (std::size_t k = 1; k < out.level_start.size(); ++k) out.level_start[k] += out.level_start[k - 1];
+  out.by_level.resize(out.order.size());
+  std::vector<std::int32_t> place(out.level_start.begin(), out.level_start.end() - 1);
+  for (auto c = out.order.rbegin(); c != out.order.rend(); ++c) out.by_level[at(place[at(depth[at(*c)])]++)] = *c;
   return out;
 }
 

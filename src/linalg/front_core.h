@@ -18,6 +18,15 @@ struct Direction {
   std::int32_t last = -1;
   std::vector<std::int32_t> next;   ///< per component, to whom it hands on; -1: the last
   std::vector<std::int32_t> order;  ///< all components, each after those that hand on to it
+  /// All components from the last one outwards: those of a level hand on to the level before, and to nobody else.
+  std::vector<std::int32_t> by_level;
+  std::vector<std::int32_t> level_start;  ///< levels + 1 offsets into by_level
+
+  [[nodiscard]] std::size_t levels() const { return level_start.size() - 1; }
+  [[nodiscard]] std::span<const std::int32_t> level(std::size_t k) const {
+    return std::span(by_level).subspan(static_cast<std::size_t>(level_start[k]),
+                                       static_cast<std::size_t>(level_start[k + 1] - level_start[k]));
+  }
 };
 
 [[nodiscard]] Direction direct(const ComponentTree& tree, std::int32_t last);

@@ -113,6 +113,7 @@ void forward(const double* L, int ld, int pivots, int boundary, double* r, int l
 }
 
 void backward(const double* L, int ld, int pivots, int boundary, double* x) {
+  if (pivots == 0) return;
   Eigen::Map<Eigen::VectorXd> top(x, pivots);
   if (boundary > 0) {
     top.noalias() -= ConstMatrix(L + pivots, boundary, pivots, Eigen::OuterStride<>(ld)).transpose() *

@@ -13,6 +13,9 @@ namespace {
 
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
+/// Fronts of a level that one thread takes at a time.
+constexpr std::size_t kLevelGrain = 16;
+
 /// y of the loads, as it stands in the panel's last row.
 Eigen::Map<const VectorX, 0, Eigen::InnerStride<>> load_solution(const Front& front) {
   return {front.panel.get() + front.size(), front.pivots, Eigen::InnerStride<>(front.ld())};
@@ -118,18 +121,9 @@ void FrontTree::backward(const VectorX& x_kept, const Forward* forward, const Ve
   x.setZero(3 * Eigen::Index{core.layout.node_count()});
   x(core.kept_dofs) = x_kept;
   const Core::Backward backward(core, forward, amount, load_amount, x);
-  // Levels from the last front outwards: those of one level write what is their own.
-  std::vector<std::int32_t> level(core.fronts.size(), 0);
-  std::vector<std::vector<std::int32_t>> levels;
-  for (auto c = core.direction.order.rbegin(); c != core.direction.order.rend(); ++c) {
-    const std::int32_t to = core.next(*c);
-    if (to >= 0) level[at(*c)] = level[at(to)] + 1;
-    if (at(level[at(*c)]) == levels.size()) levels.emplace_back();
-    levels[at(level[at(*c)])].push_back(*c);
-  }
-  constexpr std::size_t kGrain = 16;
-  for (const std::vector<std::int32_t>& together : levels) {
-    parallel_ranges(together.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  for (std::size_t k = 0; k < core.direction.levels(); ++k) {  // those of one level write what is their own
+    const std::span<const std::int32_t> together = core.direction.level(k);
+    parallel_ranges(together.size(), kLevelGrain, [&](std::size_t begin, std::size_t end) {
       VectorX work;
       for (std::size_t i = begin; i < end; ++i) backward.solve(together[i], work);
     });
@@ -153,6 +147,43 @@ void FrontTree::backward_at(std::span<const std::int32_t> nodes, const VectorX& 
   needed = core.paths_from(needed);
   VectorX work;
   for (auto c = needed.rbegin(); c != needed.rend(); ++c) backward.solve(*c, work);
+}
+
+void FrontTree::solve(const VectorX& b, VectorX& x) const {
+  const Core& core = *core_;
+  RHEXIS_CHECK(core.outcome == FrontOutcome::ok, "not factored");
+  RHEXIS_CHECK(core.kept.empty(), "{} nodes are kept", core.kept.size());
+  RHEXIS_CHECK(b.size() == 3 * Eigen::Index{core.layout.node_count()}, "{} entries for {} nodes", b.size(),
+               core.layout.node_count());
+  // Each front has its right-hand side over pivots and boundary to itself, and takes what those before it have left.
+  std::vector<Eigen::Index> start(core.fronts.size() + 1, 0);
+  for (std::size_t c = 0; c < core.fronts.size(); ++c) start[c + 1] = start[c] + core.fronts[c]->size();
+  VectorX work(start.back());
+  const auto for_each_level = [&](std::size_t k, const auto& use) {
+    const std::span<const std::int32_t> together = core.direction.level(k);
+    parallel_ranges(together.size(), kLevelGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) use(*core.front(together[i]), work.data() + start[at(together[i])]);
+    });
+  };
+  for (std::size_t k = core.direction.levels(); k-- > 0;) {
+    for_each_level(k, [&](const Front& front, double* r) {
+      for (std::int32_t i = 0; i < front.pivots; ++i) r[i] = b[front.dofs[at(i)]];
+      std::fill_n(r + front.pivots, front.boundary(), 0.0);
+      for (const Incoming& from : front.incoming) {
+        const double* const left = work.data() + start[at(from.component)] + core.front(from.component)->pivots;
+        for (const Run& run : from.runs) front_kernels().add(r + run.to, left + run.from, run.length);
+      }
+      front_kernels().forward(front.panel.get(), front.ld(), front.pivots, front.boundary(), r, front.size(), 1);
+    });
+  }
+  x.setZero(b.size());
+  for (std::size_t k = 0; k < core.direction.levels(); ++k) {
+    for_each_level(k, [&](const Front& front, double* r) {
+      for (std::int32_t i = front.pivots; i < front.size(); ++i) r[i] = x[front.dofs[at(i)]];
+      front_kernels().backward(front.panel.get(), front.ld(), front.pivots, front.boundary(), r);
+      for (std::int32_t i = 0; i < front.pivots; ++i) x[front.dofs[at(i)]] = r[i];
+    });
+  }
 }
 
 }  // namespace rhexis::linalg

@@ -105,6 +105,10 @@ class FrontTree {
   void backward_at(std::span<const std::int32_t> nodes, const VectorX& x_kept, const Forward* forward,
                    const VectorX& amount, double load_amount, VectorX& x) const;
 
+  /// x = K^-1 b over all dofs, 3 * node_count, of a version that keeps no node; held dofs and dofs outside the assembly
+  /// come out zero, and b is not read there. x may be b. The loads of the elements are not in it.
+  void solve(const VectorX& b, VectorX& x) const;
+
   /// Fronts in all, and those that the last update factored again.
   [[nodiscard]] std::size_t front_count() const;
   [[nodiscard]] std::size_t fronts_made() const;

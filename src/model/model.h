@@ -72,6 +72,11 @@ class Model {
   virtual Evaluation residual(const State& state, Scratch& scratch, Residual& out) const = 0;
   /// The derivative of the residual; `out` from make_tangent, overwritten.
   virtual Evaluation tangent(const State& state, Scratch& scratch, linalg::SaddleMatrix& out) const = 0;
+  /// What `tangent` adds up, tet by tet: `blocks` 90 per tet of the mesh, the 3 x 3 blocks (by rows) of the pairs
+  /// (0,0), (1,0), (1,1), (2,0), ... (3,3) of its four nodes in ascending order, N/m; `coupling` 12 per tet, its row of
+  /// B^T in that order, m^2, empty of displacement models. Not of mass-spring and taylor-hood: RHEXIS_CHECK.
+  virtual Evaluation tet_tangents(const State& state, Scratch& scratch, std::vector<double>& blocks,
+                                  std::vector<double>& coupling) const;
   /// Stored energy (the Lagrangian of the mixed models), J; for tests and line search.
   [[nodiscard]] virtual double energy(const State& state) const = 0;
   [[nodiscard]] virtual TetFields fields(const State& state) const = 0;

@@ -74,6 +74,15 @@ class P1Displacement final : public P1Model {
     return evaluation_of(scratch.J);
   }
 
+  Evaluation tet_tangents(const State& state, Scratch& scratch, std::vector<double>& blocks,
+                          std::vector<double>& coupling) const override {
+    blocks.assign(90 * tet_count(), 0.0);
+    coupling.clear();
+    for_each_chunk_apart(
+        [&](const TetRun& run) { own_.tangent(response_, run, state.u.data(), blocks.data(), scratch.J.data()); });
+    return evaluation_of(scratch.J);
+  }
+
   double energy(const State& state) const override {
     return sum_over_chunks([&](const TetRun& run) { return own_.energy(response_, run, state.u.data()); });
   }

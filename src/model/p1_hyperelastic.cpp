@@ -85,6 +85,16 @@ class P1Hyperelastic final : public P1Model {
     return evaluation_of(scratch.J);
   }
 
+  Evaluation tet_tangents(const State& state, Scratch& scratch, std::vector<double>& blocks,
+                          std::vector<double>& coupling) const override {
+    blocks.assign(90 * tet_count(), 0.0);
+    coupling.assign(12 * tet_count(), 0.0);
+    for_each_chunk_apart([&](const TetRun& run) {
+      own_.tangent(law_, run, state.u.data(), state.lambda.data(), blocks.data(), coupling.data(), scratch.J.data());
+    });
+    return evaluation_of(scratch.J);
+  }
+
   /// The Lagrangian (2) with the jump term, external work left out.
   double energy(const State& state) const override {
     const double stored =

@@ -50,6 +50,19 @@ std::size_t P1Model::memory_bytes() const {
          batches_.memory_bytes() + (pattern_->row_start.size() + pattern_->column.size()) * sizeof(std::int32_t);
 }
 
+void P1Model::for_each_chunk_apart(const std::function<void(const element::TetRun&)>& body) const {
+  batches_.for_each_chunk([&](const element::TetRun& run, std::size_t) {
+    std::vector<element::BlockPlaces> apart(static_cast<std::size_t>(run.count));
+    for (std::size_t i = 0; i < apart.size(); ++i) {
+      for (int pair = 0; pair < 10; ++pair) {
+        for (int lane = 0; lane < element::kBatch; ++lane)
+          apart[i].block[pair][lane] = 10 * run.batches[i].tet[lane] + pair;
+      }
+    }
+    body({run.batches, apart.data(), run.count});
+  });
+}
+
 double P1Model::sum_over_chunks(const std::function<double(const element::TetRun&)>& part) const {
   std::vector<double> parts(batches_.chunk_count());
   batches_.for_each_chunk([&](const element::TetRun& run, std::size_t chunk) { parts[chunk] = part(run); });

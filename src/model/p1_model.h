@@ -25,6 +25,8 @@ class P1Model : public Model {
   [[nodiscard]] const element::TetBatches& batches() const { return batches_; }
   [[nodiscard]] const element::TetKernels& kernels() const { return kernels_; }
 
+  /// Calls body(run) for every chunk, in parallel, with places that keep the blocks of each tet to itself: 10 t + pair.
+  void for_each_chunk_apart(const std::function<void(const element::TetRun&)>& body) const;
   /// Sum of part(run) over the chunks, in one order whatever the threads.
   [[nodiscard]] double sum_over_chunks(const std::function<double(const element::TetRun&)>& part) const;
   /// The stiffness of small strains about rest, for the preconditioners.

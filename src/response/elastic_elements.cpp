@@ -98,4 +98,22 @@ double support_energy(const mesh::TornMesh& mesh, const ElasticModel& model) {
   return sum;
 }
 
+double potential_energy(const mesh::TornMesh& mesh, const ElasticModel& model, const VectorX& u) {
+  double sum = 0.0;
+  ElementMatrix K;
+  ElementVector of_tet;
+  for (std::size_t t = 0; t < mesh.mesh().tet_count(); ++t) {
+    const TetId tet(t);
+    if (!mesh.is_solved(tet)) continue;
+    for (int a = 0; a < 4; ++a)
+      of_tet.segment<3>(3 * a) =
+          u.segment<3>(3 * Eigen::Index{mesh.mesh().tet(tet)[static_cast<std::size_t>(a)].value()});
+    tet_stiffness(mesh, model, tet, K);
+    sum += 0.5 * of_tet.dot(K * of_tet) - tet_weight(mesh, model, tet).dot(of_tet);
+  }
+  // Out of the solve the displacement is zero.
+  return model.body.dead_force.size() == 0 ? sum
+                                           : sum - model.body.dead_force.dot(u.head(model.body.dead_force.size()));
+}
+
 }  // namespace rhexis::response

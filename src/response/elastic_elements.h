@@ -57,4 +57,7 @@ class ElasticElements final : public linalg::ElementSource {
 /// the potential energy has beside the part of the free dofs.
 [[nodiscard]] double support_energy(const mesh::TornMesh& mesh, const ElasticModel& model);
 
+/// 1/2 u K u - f u of all tets in the solve with the displacement `u` (m, 3 per node), J; f: weights and dead forces.
+[[nodiscard]] double potential_energy(const mesh::TornMesh& mesh, const ElasticModel& model, const VectorX& u);
+
 }  // namespace rhexis::response

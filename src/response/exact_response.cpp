@@ -65,7 +65,8 @@ void ExactResponse::grasp(std::span<const NodeId> nodes) {
   solve_held();
 }
 
-FollowReport ExactResponse::follow(const mesh::MeshEdit& edit, std::span<const Focus> focus) {
+FollowReport ExactResponse::follow(const mesh::MeshEdit& edit, std::span<const Focus> focus,
+                                   const CrackAdvance* /*advance*/) {
   const Stopwatch watch;
   FollowReport report;
   Tree next = take_up(edit, focus, report);

@@ -40,13 +40,16 @@ class ExactResponse final : public Response {
   void grasp(std::span<const NodeId> nodes) override;
   /// When the torn body is not stable nothing is followed: the caller takes the edit back from the mesh, and may apply
   /// it anew with the loose pieces frozen.
-  FollowReport follow(const mesh::MeshEdit& edit, std::span<const Focus> focus) override;
+  FollowReport follow(const mesh::MeshEdit& edit, std::span<const Focus> focus,
+                      const CrackAdvance* advance = nullptr) override;
   void go_back(const mesh::MeshEdit& edit, std::span<const Focus> focus) override;
 
   [[nodiscard]] const Eigen::MatrixXd& compliance() const override { return compliance_; }
   [[nodiscard]] const VectorX& rest() const override { return rest_; }
   void displacement(std::span<const NodeId> nodes, const VectorX& held_forces, double loads, VectorX& out) override;
   void whole_displacement(const VectorX& held_forces, double loads, VectorX& out) override;
+  [[nodiscard]] bool is_of_torn_body() const override { return true; }
+  [[nodiscard]] std::optional<RecordUse> record_use() const override { return std::nullopt; }
   [[nodiscard]] double stored_energy(const VectorX& held_forces) override;
   [[nodiscard]] std::size_t memory_bytes() const override;
 

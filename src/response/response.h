@@ -1,8 +1,10 @@
 #pragma once
 
 /// How a body answers the point that is held, topology after topology. `exact` solves the torn body; `recorded` (the
-/// thesis) will take the nearest recorded answer. Both are followed by the same calls.
+/// thesis) takes what was recorded of cracks like those of the body. Both are followed by the same calls.
 
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,6 +24,22 @@ struct Focus {
   Vec3 tangent = Vec3::Zero();    ///< along the front; zero when unknown
 };
 
+/// The advance of a crack that an edit made.
+struct CrackAdvance {
+  std::size_t crack = 0;          ///< its number; the scene's own crack is 0
+  bool started = false;           ///< it begins here
+  Vec3 direction = Vec3::Zero();  ///< unit, reference: mean over its front
+  double length = 0.0;            ///< m, as it was asked for: what it runs on until an edge is cut does not count
+};
+
+/// Which part of a record answers, and what it does not know.
+struct RecordUse {
+  int topology = 0;        ///< the nearest, (4.8), (4.9)
+  bool outside = false;    ///< some angle or length lies beyond the record, or some crack is none of it
+  bool past_last = false;  ///< more advances than the record has: the first of them count
+  bool torn_off = false;   ///< what is held has come off in a recorded topology that counts
+};
+
 /// What following an edit took.
 struct FollowReport {
   bool ok = true;  ///< false: the torn body is not stable (a free motion is left); answers are those of before
@@ -36,8 +54,10 @@ class Response {
 
   /// The nodes that the hand holds from now on (none: it lets go). Their forces are the columns of what follows.
   virtual void grasp(std::span<const NodeId> nodes) = 0;
-  /// After the body has taken an edit. `focus`: one per crack that still runs.
-  virtual FollowReport follow(const mesh::MeshEdit& edit, std::span<const Focus> focus) = 0;
+  /// After the body has taken an edit. `focus`: one per crack that still runs. `advance`: what made the edit; null: no
+  /// crack did.
+  virtual FollowReport follow(const mesh::MeshEdit& edit, std::span<const Focus> focus,
+                              const CrackAdvance* advance = nullptr) = 0;
   /// After the body has given an edit back.
   virtual void go_back(const mesh::MeshEdit& edit, std::span<const Focus> focus) = 0;
 
@@ -51,6 +71,11 @@ class Response {
   virtual void displacement(std::span<const NodeId> nodes, const VectorX& held_forces, double loads, VectorX& out) = 0;
   /// The same of every node of the body.
   virtual void whole_displacement(const VectorX& held_forces, double loads, VectorX& out) = 0;
+  /// True: the displacement is that of the torn body, inside a local object too. False: it is good at the boundary of
+  /// one, which then has to be solved.
+  [[nodiscard]] virtual bool is_of_torn_body() const = 0;
+  /// Empty for a response without a record.
+  [[nodiscard]] virtual std::optional<RecordUse> record_use() const = 0;
   /// Potential energy of the body and its loads, the hand's forces aside, with forces on the held nodes, J; relative to
   /// the equilibrium under the loads alone when the response was made. What is frozen takes its energy along.
   [[nodiscard]] virtual double stored_energy(const VectorX& held_forces) = 0;

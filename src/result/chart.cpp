@@ -13,6 +13,7 @@
 #include "base/atomic_file.h"
 #include "base/check.h"
 #include "mesh/io/xml_text.h"
+#include "result/svg_writer.h"
 
 namespace rhexis::result {
 namespace {
@@ -44,14 +45,6 @@ double text_width(std::string_view text, double size) {
   const auto characters =
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; });
   return kCharacter * size * static_cast<double>(characters);
-}
-
-/// A coordinate in px: hundredths are finer than any screen.
-std::string px(double value) {
-  std::string out = fmt::format("{:.2f}", value);
-  while (out.back() == '0') out.pop_back();
-  if (out.back() == '.') out.pop_back();
-  return out == "-0" ? "0" : out;
 }
 
 struct Range {
@@ -117,7 +110,7 @@ std::vector<Point> thinned(const std::vector<Point>& points) {
   return out;
 }
 
-class Drawing {
+class Drawing : private SvgWriter {
  public:
   Drawing(const Chart& chart, const ChartScale& x, const ChartScale& y) : chart_(chart), x_(x), y_(y) {
     for (std::size_t k = 0; k < chart.series.size(); ++k) {
@@ -137,14 +130,6 @@ class Drawing {
   }
 
  private:
-  template <class... Args>
-  void add(fmt::format_string<Args...> format, Args&&... args) {
-    fmt::format_to(std::back_inserter(out_), format, std::forward<Args>(args)...);
-  }
-  void text(double x, double y, std::string_view classes, std::string_view what, std::string_view more = {}) {
-    add("<text x=\"{}\" y=\"{}\" class=\"{}\"{}>{}</text>\n", px(x), px(y), classes, more, mesh::io::xml_escaped(what));
-  }
-
   void open();
   void heading();
   void legend();
@@ -164,7 +149,6 @@ class Drawing {
   double top_ = kMargin;  // px, of what comes next
   double plot_width_ = 0.0;
   double plot_height_ = 0.0;
-  std::string out_;
 };
 
 /// All rules begin with the class of the root, so that a page may hold several charts beside its own style.

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/check.h"
 #include "mesh/io/mesh_file.h"
 
 namespace rhexis::result {
@@ -54,21 +55,6 @@ FieldDifference difference(const Field& a, const Field& b) {
   return d;
 }
 
-BoxDifference box_difference(const mesh::TetMesh& mesh, const Field& a, const Field& b) {
-  const Vec3 box = mesh::bounding_box(mesh).size();
-  BoxDifference d;
-  const std::size_t count = a.values.size() / 3;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec3 percent =
-        100.0 * (Eigen::Map<const Vec3>(b.values.data() + 3 * i) - Eigen::Map<const Vec3>(a.values.data() + 3 * i))
-                    .cwiseAbs()
-                    .cwiseQuotient(box);
-    d.mean += percent / static_cast<double>(count);
-    d.largest = d.largest.cwiseMax(percent);
-  }
-  return d;
-}
-
 const Field* find_like(const std::vector<Field>& fields, const Field& wanted) {
   const auto found = std::find_if(fields.begin(), fields.end(), [&](const Field& field) {
     return field.name == wanted.name && field.centering == wanted.centering && field.components == wanted.components &&
@@ -78,6 +64,20 @@ const Field* find_like(const std::vector<Field>& fields, const Field& wanted) {
 }
 
 }  // namespace
+
+BoxDifference box_difference(const Vec3& box, std::span<const double> a, std::span<const double> b) {
+  RHEXIS_CHECK(a.size() == b.size() && a.size() % 3 == 0, "{} and {} components", a.size(), b.size());
+  BoxDifference d;
+  const std::size_t count = a.size() / 3;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 percent = 100.0 * (Eigen::Map<const Vec3>(b.data() + 3 * i) - Eigen::Map<const Vec3>(a.data() + 3 * i))
+                                     .cwiseAbs()
+                                     .cwiseQuotient(box);
+    d.mean += percent / static_cast<double>(count);
+    d.largest = d.largest.cwiseMax(percent);
+  }
+  return d;
+}
 
 Expected<Comparison> compare_results(const fs::path& a, const fs::path& b) {
   const fs::path name_a = result_file(a);
@@ -97,7 +97,7 @@ Expected<Comparison> compare_results(const fs::path& a, const fs::path& b) {
     }
     comparison.fields.push_back(difference(field, *other));
     if (field.name == "displacement" && field.components == 3)
-      comparison.displacement = box_difference(file_a->mesh, field, *other);
+      comparison.displacement = box_difference(mesh::bounding_box(file_a->mesh).size(), field.values, other->values);
   }
   for (const Field& field : file_b->fields)
     if (find_like(file_a->fields, field) == nullptr) comparison.only_in_one.push_back(field.name);

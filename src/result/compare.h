@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ struct BoxDifference {
   Vec3 mean = Vec3::Zero();
   Vec3 largest = Vec3::Zero();
 };
+
+/// Of two displacements of the same nodes, 3 values a node, m; `box`: sides of the bounding box, m.
+[[nodiscard]] BoxDifference box_difference(const Vec3& box, std::span<const double> a, std::span<const double> b);
 
 struct Comparison {
   std::vector<FieldDifference> fields;   ///< those that both results hold, in the order of the first

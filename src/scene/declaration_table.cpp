@@ -375,7 +375,8 @@ Section interaction() {
           {.name = "record",
            .kind = Kind::file,
            .otherwise = "needed by `recorded`",
-           .doc = "The record of `response = \"recorded\"`, written by `rhexis precompute`; relative to the scene."},
+           .doc = "Written by `rhexis precompute`; relative to the scene. With `exact`, what `rhexis play` can show "
+                  "beside."},
           {.name = "max_force",
            .kind = Kind::number,
            .unit = "N",

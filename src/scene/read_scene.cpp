@@ -89,7 +89,7 @@ Expected<Scene> settings_of(const Values& values, const std::string& file) {
       read_list(values.all("support"), scene.supports, read_support),
       read_list(values.all("crack"), scene.cracks, read_crack),
       take(read_record_section(values.one("record")), scene.record),
-      take(read_interaction_section(values.one("interaction"), folder, scene), scene.interaction),
+      take(read_interaction_section(values.one("interaction"), folder), scene.interaction),
   };
   for (const Expected<void>& part : read)
     if (!part) return fail(part.error());

@@ -116,7 +116,7 @@ struct CrackSettings {
 };
 struct InteractionSettings {
   std::string response;                         ///< "exact", "recorded"
-  std::optional<std::filesystem::path> record;  ///< found from here; given with "recorded"
+  std::optional<std::filesystem::path> record;  ///< found from here; always given with "recorded"
   double max_force = 0.0;                       ///< N
   bool blend_contact = false;                   ///< the thesis's rule for a point inside a triangle
   std::optional<Place> place;                   ///< empty: the section is left out

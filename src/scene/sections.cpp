@@ -185,8 +185,7 @@ Expected<RecordSettings> read_record_section(const SectionValues& values) {
   return record;
 }
 
-Expected<InteractionSettings> read_interaction_section(const SectionValues& values, const fs::path& folder,
-                                                       Scene& scene) {
+Expected<InteractionSettings> read_interaction_section(const SectionValues& values, const fs::path& folder) {
   InteractionSettings interaction;
   interaction.response = values.get<std::string>("response");
   interaction.max_force = values.get<double>("max_force");
@@ -195,8 +194,6 @@ Expected<InteractionSettings> read_interaction_section(const SectionValues& valu
   if (const Setting* record = values.find("record")) interaction.record = folder / std::get<std::string>(record->value);
   if (interaction.response == "recorded" && !interaction.record)
     return missing(values, "record", ", which response = \"recorded\" needs");
-  if (interaction.response != "recorded")
-    warn_unread(values, "record", "response = \"" + interaction.response + '"', scene);
   return interaction;
 }
 

@@ -17,8 +17,8 @@ Expected<SupportSettings> read_support(const SectionValues& values);
 Expected<FractureSettings> read_fracture_section(const SectionValues& values, Scene& scene);
 Expected<CrackSettings> read_crack(const SectionValues& values);
 Expected<RecordSettings> read_record_section(const SectionValues& values);
-Expected<InteractionSettings> read_interaction_section(const SectionValues& values, const std::filesystem::path& folder,
-                                                       Scene& scene);
+Expected<InteractionSettings> read_interaction_section(const SectionValues& values,
+                                                       const std::filesystem::path& folder);
 
 /// 'mesh.size' is missing<why> (give ...).
 [[nodiscard]] tl::unexpected<Error> missing(const SectionValues& values, std::string_view key, const std::string& why);

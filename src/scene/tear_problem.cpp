@@ -84,10 +84,8 @@ Expected<TearProblem> build_tear_problem(const Scene& scene, Puller puller) {
   if (puller == Puller::hand) warn_hand(scene, problem.warnings);
   Expected<void> checked;
   if (puller == Puller::script) checked = check_script(scene);
-  if (puller == Puller::record) checked = check_record(scene);
+  if (checked && (puller == Puller::record || scene.interaction.response == "recorded")) checked = check_record(scene);
   if (!checked) return fail(std::move(checked.error()));
-  if (scene.interaction.response == "recorded" && puller != Puller::record)
-    return scene.interaction.place->fail("response = \"recorded\" is not there yet", "response = \"exact\"");
   problem.title = title_of(scene);
   problem.body.elastic = scene.material.elastic;
   problem.body.density = scene.material.density;

@@ -36,10 +36,10 @@ struct TearProblem {
 /// away.
 enum class Puller { script, hand, record };
 
-/// Reads or generates the mesh and holds the scene against it. Errors beside those of build_problem: a response that is
-/// not there; for a script also no `[fracture]`, no `[[pull]]`; for a record other than one `[[crack]]`, another
-/// incision than `keep-nodes`, more topologies than a record may have; for both a model other than `linear`, a
-/// pressure.
+/// Reads or generates the mesh and holds the scene against it. Errors beside those of build_problem: for a script no
+/// `[fracture]`, no `[[pull]]`; for a record, and whoever asks for `response = "recorded"`, other than one `[[crack]]`,
+/// another incision than `keep-nodes`, more topologies than a record may have; for all of them a model other than
+/// `linear`, a pressure.
 [[nodiscard]] Expected<TearProblem> build_tear_problem(const Scene& scene, Puller puller = Puller::script);
 
 }  // namespace rhexis::scene

@@ -39,6 +39,7 @@ Right right_to_send(Payload kind) {
     case Payload::Step:
     case Payload::Script:
     case Payload::SetValue:
+    case Payload::Compare:
     case Payload::OpenScene:
     case Payload::ShowField:
     case Payload::Record:

@@ -3,9 +3,11 @@
 /// What the tearing of one tick leaves on record.
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "base/vec.h"
+#include "response/response.h"
 
 namespace rhexis::session {
 
@@ -23,18 +25,19 @@ struct AdvanceRecord {
   int tets_frozen = 0;
   int nodes_moved = 0;
   int nodes_copied = 0;
-  double volume_lost = 0.0;          ///< m^3
-  int pieces = 1;                    ///< of the body after it
-  bool finished = false;             ///< the crack has left the body
-  double crack_area = 0.0;           ///< m^2, of all cracks after it
-  Vec3 force_before = Vec3::Zero();  ///< N, on the hand
-  Vec3 force_after = Vec3::Zero();   ///< N, on the hand at the same place
-  std::vector<Vec3> front_before;    ///< m
-  std::vector<Vec3> front_after;     ///< m, of all the fronts that it has become
-  double remesh_seconds = 0.0;       ///< plan, incision, pieces
-  double local_seconds = 0.0;        ///< local objects: made and factored
-  double update_seconds = 0.0;       ///< response, waiting included
-  double wait_seconds = 0.0;         ///< of that, for work in the background
+  double volume_lost = 0.0;                   ///< m^3
+  int pieces = 1;                             ///< of the body after it
+  bool finished = false;                      ///< the crack has left the body
+  double crack_area = 0.0;                    ///< m^2, of all cracks after it
+  Vec3 force_before = Vec3::Zero();           ///< N, on the hand
+  Vec3 force_after = Vec3::Zero();            ///< N, on the hand at the same place
+  std::optional<response::RecordUse> record;  ///< what answers from now on; empty: no record does
+  std::vector<Vec3> front_before;             ///< m
+  std::vector<Vec3> front_after;              ///< m, of all the fronts that it has become
+  double remesh_seconds = 0.0;                ///< plan, incision, pieces
+  double local_seconds = 0.0;                 ///< local objects: made and factored
+  double update_seconds = 0.0;                ///< response, waiting included
+  double wait_seconds = 0.0;                  ///< of that, for work in the background
 };
 
 }  // namespace rhexis::session

@@ -45,6 +45,16 @@ std::unique_ptr<wire::AdvanceT> advance_of(const AdvanceRecord& record, double t
   return out;
 }
 
+std::unique_ptr<wire::RecordUseT> own(const std::optional<response::RecordUse>& use) {
+  if (!use) return nullptr;
+  auto out = std::make_unique<wire::RecordUseT>();
+  out->topology = static_cast<std::uint32_t>(use->topology);
+  out->outside = use->outside;
+  out->past_last = use->past_last;
+  out->torn_off = use->torn_off;
+  return out;
+}
+
 std::vector<std::uint32_t> local_slots(const Interaction& interaction) {
   std::vector<std::uint32_t> out;
   for (const fracture::LocalObject& object : interaction.tear().local_objects())
@@ -111,6 +121,8 @@ wire::BodyT FrameMaker::body(const Interaction& interaction) {
   out.max_force = of.problem.interaction.max_force;
   out.values = scene::live_values_json(of.scene.text, of.scene.file, of.scene.overrides).value_or("{}");
   out.script = script_seconds(of.problem.pulls);
+  out.response = of.problem.interaction.response;
+  out.has_record = of.problem.interaction.record.has_value();
   values_.body_changed();
   basis_.clear();
   return out;
@@ -181,6 +193,8 @@ wire::StateT FrameMaker::state(const Interaction& interaction, const haptics::Ha
   out.pieces = static_cast<std::uint32_t>(tear.pieces());
   out.paused = interaction.is_paused();
   out.scripted = interaction.is_scripted();
+  out.record = own(tear.record_use());
+  if (const std::optional<Vec3> compared = tear.compared_force()) out.compared_force = own(*compared);
   return out;
 }
 

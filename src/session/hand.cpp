@@ -49,7 +49,7 @@ void Hand::let_go(response::Response& response) {
 }
 
 void Hand::follow(const response::Response& response) {
-  if (point_) law_ = response::make_contact_law(*point_, rule_, mode_, response.compliance(), response.rest());
+  if (point_) law_ = law_by(response);
   update_forces();
 }
 
@@ -71,7 +71,15 @@ bool Hand::has_lost_hold(const mesh::TornMesh& body) const {
   return std::any_of(held.begin(), held.end(), [&](NodeId node) { return !body.is_solved(node); });
 }
 
-Vec3 Hand::force() const { return point_ ? Vec3(-law_.force(at_)) : Vec3(Vec3::Zero()); }
+response::ContactLaw Hand::law_by(const response::Response& response) const {
+  return response::make_contact_law(*point_, rule_, mode_, response.compliance(), response.rest());
+}
+
+Vec3 Hand::force() const { return force_by(law_); }
+
+Vec3 Hand::force_by(const response::ContactLaw& law) const {
+  return point_ ? Vec3(-law.force(at_)) : Vec3(Vec3::Zero());
+}
 
 void Hand::update_forces() {
   nodal_forces_ = point_ ? VectorX(law_.nodal_forces(at_).head(3 * point_->count)) : VectorX();

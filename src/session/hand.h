@@ -32,6 +32,10 @@ class Hand {
   [[nodiscard]] const response::ContactLaw& law() const { return law_; }
   /// None when it does not hold.
   [[nodiscard]] std::span<const NodeId> nodes() const;
+  /// What another response says of the same point, held by the same rule.
+  [[nodiscard]] response::ContactLaw law_by(const response::Response& response) const;
+  /// N, on the hand where it is, by such a law.
+  [[nodiscard]] Vec3 force_by(const response::ContactLaw& law) const;
   /// Some held node has no tet in the solve any more.
   [[nodiscard]] bool has_lost_hold(const mesh::TornMesh& body) const;
   /// N, on the hand.

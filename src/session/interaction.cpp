@@ -6,6 +6,7 @@
 
 #include "base/hash.h"
 #include "response/publish.h"
+#include "session/scene_record.h"
 
 namespace rhexis::session {
 namespace {
@@ -91,6 +92,21 @@ void Interaction::tell_of(const AdvanceRecord& advance) {
     listener_.says(wire::Level::warning, fmt::format("the body is in {} pieces", advance.pieces));
   if (advance.tets_frozen > 0)
     listener_.says(wire::Level::info, "a piece has no support any more: it stays where it was, and cannot be held");
+  watch_record();
+  if (compares_ && !tear().compared_force()) {
+    compares_ = false;
+    listener_.says(wire::Level::warning, "the exact response has no answer: a part of the torn body can move freely");
+  }
+}
+
+/// What the record does not know is said once for a body.
+void Interaction::watch_record() {
+  const std::optional<response::RecordUse> use = tear().record_use();
+  if (!use) return;
+  for (const std::string& remark : remarks_on(*use, said_)) listener_.says(wire::Level::warning, remark);
+  said_.outside = said_.outside || use->outside;
+  said_.past_last = said_.past_last || use->past_last;
+  said_.torn_off = said_.torn_off || use->torn_off;
 }
 
 void Interaction::publish() {
@@ -119,6 +135,7 @@ bool Interaction::hold(const Vec3& at, response::ContactMode mode) {
     say(holds.error());
     return false;
   }
+  watch_record();
   ++grasps_;
   start_ = tear().hand().law().rest;
   return true;

@@ -46,8 +46,8 @@ class Interaction {
   /// `listener` has to outlive this; it is told of nothing before the first step or command.
   Interaction(std::unique_ptr<OpenBody> body, ReadScene read_scene, InteractionListener& listener);
 
-  /// Grasp, LetGo, Reset, Undo, Pause, Step, Script, SetValue, OpenScene; others are not for it. What makes no sense,
-  /// or is wrong, is said, and all stays as it was.
+  /// Grasp, LetGo, Reset, Undo, Pause, Step, Script, SetValue, OpenScene, Compare; others are not for it. What makes no
+  /// sense, or is wrong, is said, and all stays as it was.
   void carry_out(const wire::PayloadUnion& command);
 
   /// One step of the physics: take the hand's motion, follow the script, move the body by the hand and let it tear
@@ -79,6 +79,8 @@ class Interaction {
   void take_up(Expected<std::unique_ptr<OpenBody>> body);
   void set_value(const wire::SetValueT& command);
   void undo();
+  void compare();
+  void watch_record();
   [[nodiscard]] bool runs() const { return !paused_ || now_ < run_until_; }
   void say(const Error& error) { listener_.says(wire::Level::error, error.message()); }
 
@@ -98,6 +100,8 @@ class Interaction {
   Vec3 by_ = Vec3::Zero();
   bool settled_ = false;      ///< another tick at the same place of the hand would change nothing
   std::string last_trouble_;  ///< said already
+  bool compares_ = false;     ///< asked for, with every body
+  response::RecordUse said_;  ///< of the record, since the body was opened
   int advances_ = 0;          ///< in the present step
   int tearing_ = 0;           ///< steps that have torn since the hand was followed last
 };

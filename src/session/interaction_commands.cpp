@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "session/interaction.h"
+#include "session/scene_record.h"
 
 namespace rhexis::session {
 namespace {
@@ -41,6 +42,10 @@ void Interaction::carry_out(const wire::PayloadUnion& command) {
       if (!body_->problem.pulls.empty()) script_.begin();
       break;
     case wire::Payload::SetValue: set_value(*command.AsSetValue()); break;
+    case wire::Payload::Compare:
+      compares_ = command.AsCompare()->on;
+      compare();
+      break;
     case wire::Payload::OpenScene: {
       Expected<SceneChoice> choice = read_scene_(command.AsOpenScene()->file);
       if (!choice) return say(choice.error());
@@ -89,6 +94,25 @@ void Interaction::undo() {
   listener_.has_body(/*anew=*/false);
 }
 
+/// Beside a recorded response the exact one, and beside the exact one that of the record which the scene names.
+void Interaction::compare() {
+  tear().stop_comparing();
+  if (!compares_) return;
+  const scene::TearProblem& problem = body_->problem;
+  response::SharedRecord record;
+  if (!body_->start.record) {
+    Expected<response::SharedRecord> read = load_record(problem);
+    if (!read) {
+      compares_ = false;
+      return say(read.error());
+    }
+    record = std::move(*read);
+  }
+  compares_ = tear().compare(record);
+  if (!compares_)
+    listener_.says(wire::Level::warning, "the exact response has no answer: a part of the torn body can move freely");
+}
+
 /// A key that was set before is set again in its place.
 void Interaction::set_value(const wire::SetValueT& command) {
   SceneChoice choice = body_->scene;
@@ -114,6 +138,8 @@ void Interaction::take_up(Expected<std::unique_ptr<OpenBody>> body) {
   settled_ = false;
   tearing_ = 0;
   last_trouble_.clear();
+  said_ = {};
+  compare();
   listener_.has_body(/*anew=*/true);
 }
 

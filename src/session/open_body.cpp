@@ -4,7 +4,9 @@
 
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "record/store/record_reader.h"
 #include "scene/body.h"
+#include "session/scene_record.h"
 
 namespace rhexis::session {
 namespace {
@@ -30,8 +32,9 @@ std::uint64_t fingerprint_of(const scene::TearProblem& problem) {
   return hash.value();
 }
 
-Expected<std::unique_ptr<OpenBody>> start_body(SceneChoice scene, scene::TearProblem problem) {
-  Expected<TearStart> start = start_tear(problem);
+Expected<std::unique_ptr<OpenBody>> start_body(SceneChoice scene, scene::TearProblem problem,
+                                               response::SharedRecord record) {
+  Expected<TearStart> start = start_tear(problem, std::move(record));
   if (!start) return fail(std::move(start.error()));
   SurfaceTracker surface(start->tear->body());
   const std::uint64_t intact = fingerprint_of(problem);
@@ -48,6 +51,19 @@ Expected<std::unique_ptr<OpenBody>> start_body(SceneChoice scene, scene::TearPro
   return body;
 }
 
+/// `fingerprint`: that it has to have, or 0; then that it has.
+Expected<response::SharedRecord> read_record_of(const scene::TearProblem& problem, std::uint64_t& fingerprint) {
+  if (problem.interaction.response != "recorded") return nullptr;
+  Expected<response::SharedRecord> record = load_record(problem);
+  if (!record) return record;
+  const std::uint64_t found = (*record)->head().fingerprint;
+  if (fingerprint != 0 && fingerprint != found)
+    return fail(fmt::format("record {:016x}, and {:016x} is what the forces were felt of", found, fingerprint),
+                "the record of that time in its place", problem.interaction.record->lexically_normal().string());
+  fingerprint = found;
+  return record;
+}
+
 }  // namespace
 
 Expected<SceneChoice> read_scene_choice(std::string file, std::vector<std::string> overrides) {
@@ -55,6 +71,9 @@ Expected<SceneChoice> read_scene_choice(std::string file, std::vector<std::strin
   if (!text) return fail(std::move(text.error()));
   SceneChoice choice{.file = std::move(file), .text = std::move(*text), .overrides = std::move(overrides)};
   const Expected<scene::Scene> scene = scene::parse_scene(choice.text, choice.file, choice.overrides);
+  if (scene && scene->interaction.response == "recorded")
+    choice.record =
+        record::store::fingerprint_of(*scene->interaction.record).value_or(0);  // open_body says what is wrong
   const auto* source = scene ? std::get_if<scene::MeshFromFile>(&scene->mesh.source) : nullptr;
   if (source == nullptr) return choice;
   Expected<std::shared_ptr<const std::string>> bytes = scene::read_mesh_bytes(*scene);
@@ -75,10 +94,14 @@ Expected<std::unique_ptr<OpenBody>> open_body(SceneChoice choice) {
   Expected<scene::TearProblem> problem = scene::build_tear_problem(*scene, scene::Puller::hand);
   if (!problem) return fail(std::move(problem.error()));
   set_thread_count(scene->solver.threads);
-  return start_body(std::move(choice), std::move(*problem));
+  Expected<response::SharedRecord> record = read_record_of(*problem, choice.record);
+  if (!record) return fail(std::move(record.error()));
+  return start_body(std::move(choice), std::move(*problem), std::move(*record));
 }
 
-Expected<std::unique_ptr<OpenBody>> reopen(const OpenBody& body) { return start_body(body.scene, body.problem); }
+Expected<std::unique_ptr<OpenBody>> reopen(const OpenBody& body) {
+  return start_body(body.scene, body.problem, body.start.record);
+}
 
 std::uint64_t chained(std::uint64_t fingerprint, const mesh::MeshEdit& edit, bool taken_back) {
   Hash hash;

@@ -26,6 +26,7 @@ struct SceneChoice {
   std::string text;                                 ///< TOML
   std::vector<std::string> overrides;               ///< "key=value", in the order of --set
   std::shared_ptr<const MeshBytes> mesh = nullptr;  ///< that the scene reads; null: it generates its mesh
+  std::uint64_t record = 0;  ///< fingerprint of the record that its response needs; 0: none, or not known yet
 };
 
 struct OpenBody {
@@ -44,8 +45,8 @@ struct OpenBody {
 /// Reads a scene's file, and the mesh file that it names. Errors: of the two files. That the scene is no good,
 /// open_body says.
 [[nodiscard]] Expected<SceneChoice> read_scene_choice(std::string file, std::vector<std::string> overrides);
-/// Reads no file. Errors are those of the scene, its mesh and its first cracks; a scene that names another mesh file
-/// than `scene` holds.
+/// Reads no file but the record that the response needs, which is held against `scene.record`. Errors are those of the
+/// scene, its mesh, its record and its first cracks; a scene that names another mesh file than `scene` holds.
 [[nodiscard]] Expected<std::unique_ptr<OpenBody>> open_body(SceneChoice scene);
 /// The same body from the start again, without reading anything.
 [[nodiscard]] Expected<std::unique_ptr<OpenBody>> reopen(const OpenBody& body);

@@ -1,5 +1,6 @@
 #include "session/recording_scene.h"
 
+#include <charconv>
 #include <optional>
 #include <set>
 #include <utility>
@@ -48,6 +49,11 @@ class SceneReader final : public nlohmann::json_sax<Json> {
 
   /// Empty: something is missing.
   [[nodiscard]] std::optional<SceneChoice> scene() {
+    if (seen_.erase("record") == 1) {
+      const char* const end = record_.data() + record_.size();
+      const auto [stop, error] = std::from_chars(record_.data(), end, scene_.record, 16);
+      if (record_.size() != 16 || stop != end || error != std::errc()) return {};
+    }
     const std::size_t of_mesh = seen_.erase("mesh_file") + seen_.erase("mesh");
     if (seen_ != std::set<std::string>{"file", "text", "overrides"} || of_mesh == 1) return {};
     if (of_mesh == 2)
@@ -61,12 +67,14 @@ class SceneReader final : public nlohmann::json_sax<Json> {
     if (key_ == "file") return &scene_.file;
     if (key_ == "mesh_file") return &mesh_file_;
     if (key_ == "mesh") return &mesh_;
+    if (key_ == "record") return &record_;
     return key_ == "text" ? &scene_.text : nullptr;
   }
 
   SceneChoice scene_;
   std::string mesh_file_;
   std::string mesh_;
+  std::string record_;
   std::set<std::string> seen_;
   std::string key_;
   bool begun_ = false;
@@ -87,6 +95,7 @@ std::vector<std::uint8_t> bytes_of(const SceneChoice& scene) {
     json["mesh_file"] = binary(scene.mesh->file.string());
     json["mesh"] = binary(scene.mesh->bytes);
   }
+  if (scene.record != 0) json["record"] = binary(fmt::format("{:016x}", scene.record));
   return Json::to_cbor(json);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-/// A scene as a recording keeps it: name, text, what was set and its mesh file, as bytes.
+/// A scene as a recording keeps it: name, text, what was set, its mesh file and which record, as bytes.
 
 #include <cstdint>
 #include <span>

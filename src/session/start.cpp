@@ -1,9 +1,11 @@
 #include "session/start.h"
 
+#include "session/scene_record.h"
+
 namespace rhexis::session {
 namespace {
 
-TearSettings settings_of(const scene::TearProblem& problem) {
+TearSettings settings_of(const scene::TearProblem& problem, response::SharedRecord record) {
   const scene::FractureSettings& fracture = problem.fracture;
   return {
       .body = problem.body,
@@ -15,6 +17,7 @@ TearSettings settings_of(const scene::TearProblem& problem) {
       .ahead_only = fracture.ahead_only,
       .local_radius = fracture.local_radius.value_or(0.0),
       .incision = fracture.incision == "split" ? fracture::IncisionMethod::split : fracture::IncisionMethod::keep_nodes,
+      .record = std::move(record),
       .contact = problem.interaction.blend_contact ? response::ContactRule::blend : response::ContactRule::consistent};
 }
 
@@ -22,9 +25,15 @@ std::string placed(const scene::Place& place, const std::string& text) { return 
 
 }  // namespace
 
-Expected<TearStart> start_tear(const scene::TearProblem& problem) {
+Expected<TearStart> start_tear(const scene::TearProblem& problem, response::SharedRecord record) {
   TearStart start;
-  Expected<std::unique_ptr<TearSession>> made = TearSession::make(problem.mesh, settings_of(problem), problem.cracks);
+  if (problem.interaction.response == "recorded") {
+    Expected<response::SharedRecord> read = record ? std::move(record) : load_record(problem);
+    if (!read) return fail(std::move(read.error()));
+    start.record = std::move(*read);
+  }
+  Expected<std::unique_ptr<TearSession>> made =
+      TearSession::make(problem.mesh, settings_of(problem, start.record), problem.cracks);
   if (!made) {
     const scene::Place& place = problem.fracture.place;
     return fail(made.error().at(place.file ? *place.file : "", place.line));

@@ -13,11 +13,14 @@
 namespace rhexis::session {
 
 struct TearStart {
+  response::SharedRecord record;  ///< of `response = "recorded"`; else null
   std::unique_ptr<TearSession> tear;
   std::vector<std::string> warnings;  ///< one line each, placed
 };
 
-/// Cuts the first cracks, factors, and takes hold of the point of every pull once. Errors are placed.
-[[nodiscard]] Expected<TearStart> start_tear(const scene::TearProblem& problem);
+/// Reads the record that the scene's response needs, unless `record` is it; cuts the first cracks, factors, and takes
+/// hold of the point of every pull once. Errors are placed; those of the record as load_record.
+[[nodiscard]] Expected<TearStart> start_tear(const scene::TearProblem& problem,
+                                             response::SharedRecord record = nullptr);
 
 }  // namespace rhexis::session

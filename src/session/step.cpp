@@ -15,6 +15,13 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
+/// Of the mean step; zero where the front does not move.
+Vec3 direction_of(const fracture::Advance& advance) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& step : advance.step) sum += step;
+  return sum.norm() > 0.0 ? Vec3(sum.normalized()) : sum;
+}
+
 std::vector<Vec3> positions(const fracture::Crack& crack) {
   std::vector<Vec3> out;
   for (const fracture::FrontPoint& point : crack.front) out.push_back(point.position);
@@ -86,6 +93,7 @@ bool TearSession::run_on(std::size_t crack, Judged judged, TickReport& report, c
   const Stopwatch watch;
   fracture::Advance& advance = judged.advance;
   Change change;
+  change.advance = {.crack = crack, .direction = direction_of(advance), .length = advance.length};
   change.incision = fracture::cut_along(body(), torn_.surroundings(), cracks_[crack], advance,
                                         torn_.incision_settings(hand_.nodes()));
   change.record.length = advance.length;
@@ -130,6 +138,7 @@ TearSession::Change TearSession::beginning(std::vector<fracture::Crack> cracks, 
   change.incision = std::move(incision);
   change.record.started = true;
   change.crack = cracks_.size();
+  change.advance = {.crack = change.crack, .started = true};
   change.next_cracks = [this, begun = std::move(cracks)] {
     std::vector<fracture::Crack> next = cracks_;
     next.insert(next.end(), begun.begin(), begun.end());
@@ -153,7 +162,7 @@ bool TearSession::take(Change change, TickReport& report, const Observer& observ
   reach_.resize(cracks_.size(), change.radius);
   reach_[change.crack] = change.radius;
   if (response_) {
-    const response::FollowReport followed = response_->follow(edit, foci());
+    const response::FollowReport followed = response_->follow(edit, foci(), &change.advance);
     record.update_seconds = followed.update_seconds;
     record.wait_seconds = followed.wait_seconds;
     if (!followed.ok) {
@@ -161,11 +170,15 @@ bool TearSession::take(Change change, TickReport& report, const Observer& observ
       report.trouble = "the torn body is not stable: a part of it can move freely (hold it by another [[support]])";
       return false;
     }
+    made_.push_back(change.advance);
+    if (comparison_ && !comparison_->follow(edit, foci(), change.advance)) comparison_.reset();
     if (hand_.has_lost_hold(body())) {
       hand_.let_go(*response_);
       report.let_go = true;
     }
     hand_.follow(*response_);
+    if (comparison_) comparison_->grasp(hand_);
+    record.record = response_->record_use();
   }
   cracks_before_.push_back(before);
 

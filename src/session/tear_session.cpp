@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "base/check.h"
 #include "response/exact_response.h"
+#include "response/recorded_response.h"
 
 namespace rhexis::session {
 namespace {
@@ -51,14 +53,32 @@ Expected<std::unique_ptr<TearSession>> TearSession::make(const mesh::TetMesh& me
   for (const scene::CrackSettings& crack : cracks)
     if (Expected<void> done = session->open(crack); !done) return fail(std::move(done.error()));
 
-  response::ExactSettings exact;
-  exact.body = all.body;
-  exact.in_background = all.background;
-  session->response_ = response::ExactResponse::make(session->body(), std::move(exact), session->foci());
+  session->response_ = session->make_response(all.record);
   if (!session->response_)
     return fail("the cracked body is not stable: a part of it can move freely", "hold it by another [[support]]");
   session->make_local_objects();
   return session;
+}
+
+std::unique_ptr<response::Response> TearSession::make_response(const response::SharedRecord& record) const {
+  if (record) return std::make_unique<response::RecordedResponse>(body(), record, settings_.body, made_);
+  response::ExactSettings exact;
+  exact.body = settings_.body;
+  exact.in_background = settings_.background;
+  return response::ExactResponse::make(body(), std::move(exact), foci());
+}
+
+bool TearSession::compare(const response::SharedRecord& record) {
+  comparison_.reset();
+  std::unique_ptr<response::Response> other = make_response(record);
+  if (!other) return false;
+  comparison_.emplace(std::move(other));
+  comparison_->grasp(hand_);
+  return true;
+}
+
+std::optional<Vec3> TearSession::compared_force() const {
+  return comparison_ ? std::optional<Vec3>(comparison_->force(hand_)) : std::nullopt;
 }
 
 Expected<void> TearSession::open(const scene::CrackSettings& crack) {
@@ -72,6 +92,7 @@ Expected<void> TearSession::open(const scene::CrackSettings& crack) {
 
 Expected<void> TearSession::grasp(const Vec3& at, response::ContactMode mode) {
   Expected<void> holds = hand_.grasp(body(), at, mode, *response_);
+  if (comparison_) comparison_->grasp(hand_);
   round_ = {};
   make_local_objects();
   return holds;
@@ -79,6 +100,7 @@ Expected<void> TearSession::grasp(const Vec3& at, response::ContactMode mode) {
 
 void TearSession::let_go() {
   hand_.let_go(*response_);
+  if (comparison_) comparison_->grasp(hand_);
   round_ = {};
   make_local_objects();
 }
@@ -92,8 +114,10 @@ bool TearSession::undo() {
   const mesh::MeshEdit edit = take_back(cracks_before_.back());
   cracks_before_.pop_back();
   advances_.pop_back();
+  if (!made_.empty()) made_.pop_back();
   response_->go_back(edit, foci());
   hand_.follow(*response_);
+  if (comparison_) comparison_->go_back(edit, foci(), hand_);
   round_ = {};
   make_local_objects();
   return true;
@@ -115,12 +139,14 @@ void TearSession::make_local_objects() {
   if (!response_) return;  // the first cracks are still being cut
   running_.clear();
   local_.clear();
+  solved_alone_.clear();
   for (std::size_t crack = 0; crack < cracks_.size(); ++crack) {
     if (cracks_[crack].finished) continue;
     running_.push_back(crack);
     local_.emplace_back(body(), settings_.body.elastic,
                         torn_.surroundings().tets_near(body(), cracks_[crack], radius_of(crack)), supported(),
                         hand_.nodes(), fracture::LocalLoads{body_force_, node_force_});
+    solved_alone_.push_back(!response_->is_of_torn_body() && local_.back().factor());
   }
   local_basis_.assign(local_.size(), {});
   solve_local_objects();
@@ -135,12 +161,26 @@ void TearSession::make_local_objects() {
 void TearSession::solve_local_objects() {
   VectorX u;
   for (std::size_t k = 0; k < local_.size(); ++k) {
-    const std::vector<NodeId>& nodes = local_[k].nodes();
+    const std::vector<NodeId>& nodes = solved_alone_[k] ? local_[k].boundary() : local_[k].nodes();
     const auto solve = [&](const VectorX& forces, double loads, VectorX& out) {
       response_->displacement(nodes, forces, loads, out);
     };
     local_basis_[k].displacement(hand_.nodal_forces(), solve, u);
-    local_[k].take(u);
+    if (solved_alone_[k]) {
+      RHEXIS_CHECK(local_[k].solve(u), "local object {} has been factored", k);
+    } else {
+      local_[k].take(u);
+    }
+  }
+}
+
+void TearSession::add_local_objects(VectorX& u) const {
+  for (std::size_t k = 0; k < local_.size() && settings_.tears; ++k) {
+    if (!solved_alone_[k]) continue;
+    const std::vector<NodeId>& nodes = local_[k].nodes();
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      u.segment<3>(3 * Eigen::Index{nodes[i].value()}) =
+          local_[k].displacement().segment<3>(static_cast<Eigen::Index>(3 * i));
   }
 }
 
@@ -189,13 +229,17 @@ double TearSession::crack_area() const {
 
 double TearSession::stored_energy() { return response_->stored_energy(hand_.nodal_forces()); }
 
-void TearSession::displacement(VectorX& u) { response_->whole_displacement(hand_.nodal_forces(), 1.0, u); }
+void TearSession::displacement(VectorX& u) {
+  response_->whole_displacement(hand_.nodal_forces(), 1.0, u);
+  add_local_objects(u);
+}
 
 void TearSession::displacement(response::ForceBasis& basis, VectorX& u) {
   const auto solve = [&](const VectorX& forces, double loads, VectorX& out) {
     response_->whole_displacement(forces, loads, out);
   };
   basis.displacement(hand_.nodal_forces(), solve, u);
+  add_local_objects(u);
 }
 
 }  // namespace rhexis::session

@@ -19,6 +19,7 @@
 #include "response/response.h"
 #include "scene/scene.h"
 #include "session/advance.h"
+#include "session/comparison.h"
 #include "session/hand.h"
 #include "session/tear_settings.h"
 
@@ -57,6 +58,16 @@ class TearSession {
   /// False: none is left.
   bool undo();
 
+  /// From now on the force of another response to the same tears is there beside: the recorded one of `record`, or the
+  /// exact one (null). It has no part in what happens. False: the torn body has a free motion, and the exact one no
+  /// answer.
+  bool compare(const response::SharedRecord& record);
+  void stop_comparing() { comparison_.reset(); }
+  /// N, on the hand where it is; empty: nothing is compared, or the other response has no answer any more.
+  [[nodiscard]] std::optional<Vec3> compared_force() const;
+  /// Empty: the response has no record.
+  [[nodiscard]] std::optional<response::RecordUse> record_use() const { return response_->record_use(); }
+
   [[nodiscard]] const TearSettings& settings() const { return settings_; }
   [[nodiscard]] const mesh::TornMesh& body() const { return torn_.mesh(); }
   [[nodiscard]] const Hand& hand() const { return hand_; }
@@ -89,6 +100,7 @@ class TearSession {
     std::function<std::vector<fracture::Crack>()> next_cracks;  ///< called when the body has taken the incision
     std::size_t crack = 0;                                      ///< the one that runs on, or the first new one
     double radius = 0.0;                                        ///< m, how far it runs
+    response::CrackAdvance advance;                             ///< the same, as it was asked for
     double seconds = 0.0;                                       ///< spent on planning it
     AdvanceRecord record;                                       ///< filled in as far as is known
   };
@@ -109,20 +121,27 @@ class TearSession {
   [[nodiscard]] std::vector<fracture::TetStress> surface_stresses(const VectorX& u) const;
   [[nodiscard]] double radius_of(std::size_t crack) const;
   [[nodiscard]] std::vector<response::Focus> foci() const;
+  /// Of the body as it is: of this record, or the exact one. nullptr: it has a free motion.
+  [[nodiscard]] std::unique_ptr<response::Response> make_response(const response::SharedRecord& record) const;
+  /// What the local objects have solved by themselves takes its place in the displacement of the body.
+  void add_local_objects(VectorX& u) const;
 
   TearSettings settings_;
   fracture::TornBody torn_;
   std::unique_ptr<fracture::Criterion> criterion_;
   std::unique_ptr<response::Response> response_;  ///< made when the first cracks are cut
-  Vec3 body_force_ = Vec3::Zero();                ///< N/m^3
-  std::vector<Vec3> node_force_;                  ///< N, per node; empty without such loads
+  std::optional<Comparison> comparison_;
+  std::vector<response::CrackAdvance> made_;  ///< one per edit since then
+  Vec3 body_force_ = Vec3::Zero();            ///< N/m^3
+  std::vector<Vec3> node_force_;              ///< N, per node; empty without such loads
 
   std::vector<fracture::Crack> cracks_;
   std::vector<std::vector<fracture::Crack>> cracks_before_;  ///< of each topology but the present one
   std::vector<double> reach_;                                ///< m, length of the last advance of each crack
   std::vector<std::size_t> running_;                         ///< numbers of the cracks that run
   std::vector<fracture::LocalObject> local_;                 ///< one for each of those
-  std::vector<response::ForceBasis> local_basis_;            ///< of their nodes
+  std::vector<bool> solved_alone_;                           ///< each: by the displacement of its boundary
+  std::vector<response::ForceBasis> local_basis_;            ///< of the nodes whose displacement each takes
   std::vector<TetId> surface_tets_;                          ///< while no crack runs: where one may start
   response::ForceBasis surface_basis_;                       ///< of every node, then
   std::vector<AdvanceRecord> advances_;

@@ -10,6 +10,7 @@
 #include "fracture/incision.h"
 #include "response/contact.h"
 #include "response/elastic_elements.h"
+#include "response/recorded_response.h"
 
 namespace rhexis::session {
 
@@ -23,6 +24,8 @@ struct TearSettings {
   bool ahead_only = true;
   double local_radius = 0.0;  ///< m, first and least; 0: four mean edges
   fracture::IncisionMethod incision = fracture::IncisionMethod::keep_nodes;
+  /// The response is the recorded one, of this record of the body with its first crack; null: the exact one.
+  response::SharedRecord record = nullptr;
   response::ContactRule contact = response::ContactRule::consistent;
   /// The response may make a new factor on another thread when cracks leave the corridor that it foresaw. Worth it for
   /// cracks that turn far (docs/restructuring.md); the same bits from run to run, other ones than without.

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/parallel.h"
+#include "studies/published.h"
 #include "studies/reaction_error_figures.h"
 #include "studies/reaction_tally.h"
 #include "studies/study_plate.h"
@@ -144,16 +145,11 @@ std::optional<ReactionTally> tally_of(const Case& of, const std::vector<Reaction
   return out;
 }
 
-/// Tables 5.9 and 5.10.
-struct Thesis {
-  double better, nearest_mean, nearest_deviation, linear_mean, linear_deviation;
-};
-constexpr std::array<Thesis, 2> kThesis{
-    {{0.928, 4.0e-3, 2.6e-2, 2.1e-3, 1.9e-2}, {0.713, 4.8e-3, 2.7e-2, 3.2e-3, 1.7e-2}}};
-
 void add_rows(ordered_json& rows, int advances, const ReactionTally& tally) {
   const double scale = std::max(tally.all[0].error.largest, tally.all[1].error.largest);
-  const Thesis& thesis = kThesis.at(static_cast<std::size_t>(advances) - 1);
+  const auto thesis = [&](std::string_view what) {
+    return published_value(fmt::format("reaction-error.{}.{}", what, advances));
+  };
   for (std::size_t k = 0; k < kReactionWays.size(); ++k) {
     const WayTally& way = tally.all[k];
     const auto count = static_cast<double>(way.error.count);
@@ -173,12 +169,34 @@ void add_rows(ordered_json& rows, int advances, const ReactionTally& tally) {
                      {"largest_N", way.error.largest},
                      {"mean_relative", way.relative.mean()},
                      {"deviation_relative", way.relative.deviation()},
-                     {"thesis_better", k == 1 ? ordered_json(thesis.better) : ordered_json()},
+                     {"thesis_better", k == 1 ? ordered_json(thesis("better") / 100.0) : ordered_json()},
                      {"thesis_mean", ordered_json()},
                      {"thesis_deviation", ordered_json()}};
-    if (k < 2) row["thesis_mean"] = k == 0 ? thesis.nearest_mean : thesis.linear_mean;
-    if (k < 2) row["thesis_deviation"] = k == 0 ? thesis.nearest_deviation : thesis.linear_deviation;
+    if (k < 2) row["thesis_mean"] = thesis(k == 0 ? "mean-without" : "mean-with");
+    if (k < 2) row["thesis_deviation"] = thesis(k == 0 ? "deviation-without" : "deviation-with");
     rows.push_back(std::move(row));
+  }
+}
+
+/// Tables 5.9 and 5.10 beside ours.
+void beside_the_thesis(const StudyFolder& folder, const ordered_json& rows) {
+  const std::string plate =
+      "Our plate's mesh is another, and its exact force jumps every few degrees with the tets that are taken away, "
+      "which weights linear in the angle cannot follow.";
+  for (const ordered_json& row : rows) {
+    const auto compare = [&](std::string_view what, const ordered_json& ours, const std::string& why) {
+      folder.compare(fmt::format("reaction-error.{}.{}", what, row.at("advances").get<int>()), ours, why);
+    };
+    if (row.at("way") == kReactionWays[0]) {
+      compare("patterns", row.at("patterns"), "Fewer or more grasp points, and without those that have come off.");
+      compare("mean-without", row.at("mean"),
+              "What the thesis divides by is not said; ours by the largest error of its two ways.");
+      compare("deviation-without", row.at("deviation"), "The same.");
+    } else if (row.at("way") == kReactionWays[1]) {
+      compare("better", 100.0 * row.at("better").get<double>(), plate);
+      compare("mean-with", row.at("mean"), plate);
+      compare("deviation-with", row.at("deviation"), plate);
+    }
   }
 }
 
@@ -193,8 +211,7 @@ ordered_json means_of(ordered_json row, const Ways& ways) {
 
 Expected<void> check(const ReactionErrorOptions& options) {
   for (const int advances : options.advances) {
-    if (advances < 1 || advances > static_cast<int>(kThesis.size()))
-      return fail(fmt::format("{} advances", advances), "1 or 2");
+    if (advances < 1 || advances > 2) return fail(fmt::format("{} advances", advances), "1 or 2");
   }
   if (options.advances.empty() && options.spacings.empty()) return fail("nothing to do", "--advances 1");
   std::vector<double> spacings = options.spacings;
@@ -238,6 +255,11 @@ Expected<ordered_json> run_reaction_error(const ReactionErrorOptions& options, c
       return fail(done.error());
   }
 
+  folder.note(
+      "The plate of the thesis runs on by one or two advances of 40.3 mm in every direction; the forces of every free "
+      "node of its surface under 36 pulls of 120 mm, from a record of every 15 degrees, against those of the torn body "
+      "factored anew. nearest and linear are the thesis's, without and with its correction; local solves the "
+      "surroundings of the crack as they are and takes the far field from the same record.");
   ordered_json rows = ordered_json::array();
   ordered_json distance_rows = ordered_json::array();
   for (const int advances : options.advances) {
@@ -247,6 +269,7 @@ Expected<ordered_json> run_reaction_error(const ReactionErrorOptions& options, c
                                                         advancement, advances == 1 ? &curve : nullptr);
     if (!tally) break;
     add_rows(rows, advances, *tally);
+    compare(folder, advances, rows);
     for (const auto& [distance, ways] : tally->distance)
       distance_rows.push_back(
           means_of({{"advances", advances}, {"distance_mm", 1e3 * kDistanceClass * (distance + 0.5)}}, ways));
@@ -268,6 +291,7 @@ Expected<ordered_json> run_reaction_error(const ReactionErrorOptions& options, c
       if (Expected<void> done = folder.write_figure(name, figure); !done) return fail(done.error());
   }
   if (rows.empty() && !options.advances.empty()) return fail("stopped before the first table was whole");
+  beside_the_thesis(folder, rows);
   return rows.empty() ? spacing_rows : rows;
 }
 

@@ -30,6 +30,9 @@ inline constexpr std::array<std::string_view, 5> kWays{"dense-inverse", "sparse"
 /// A dense inverse of this many nodes holds 0.2 GB and takes seconds.
 inline constexpr int kDenseNodes = 1300;
 
+/// The plates of Fig. 5.7.
+inline constexpr std::array<int, 4> kThesisNodes{506, 765, 1012, 1270};
+
 struct RestructuringOptions {
   std::vector<int> nodes{506, 765, 1012, 1270, 5000, 20000, 100000};
   std::vector<std::string> modes{kTearModes.begin(), kTearModes.end()};

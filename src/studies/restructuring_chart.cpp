@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include "studies/published.h"
 #include "studies/restructuring.h"
 
 namespace rhexis::studies {
@@ -28,11 +31,6 @@ constexpr std::array<Line, 7> kLines{{
     {"imposed", "exact", "exact, 40.3 mm", Symbol::diamond, 0},
 }};
 
-/// Fig. 5.7 of the thesis, read off its chart: 40.3 mm imposed, another machine.
-const std::vector<double> kThesisNodes{506, 765, 1012, 1270};
-const std::vector<double> kThesisLocal{7.4, 12.6, 27.5, 30.4};
-const std::vector<double> kThesisWhole{376.9, 1290.9, 2813.1, 5905.7};
-
 }  // namespace
 
 result::Chart restructuring_chart(const ordered_json& rows) {
@@ -60,8 +58,10 @@ result::Chart restructuring_chart(const ordered_json& rows) {
   for (const bool whole : {true, false}) {
     ChartSeries series;
     series.name = whole ? "thesis: whole inverse" : "thesis: local object";
-    series.x = kThesisNodes;
-    series.y = whole ? kThesisWhole : kThesisLocal;
+    for (const int nodes : kThesisNodes) {  // 40.3 mm imposed, another machine
+      series.x.push_back(nodes);
+      series.y.push_back(published_value(fmt::format("restructuring.{}.{}", whole ? "whole" : "local", nodes)));
+    }
     series.line = false;
     series.hollow = true;
     series.symbol = whole ? Symbol::circle : Symbol::triangle;

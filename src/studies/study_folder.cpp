@@ -6,6 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "base/check.h"
+#include "studies/published.h"
 
 namespace rhexis::studies {
 namespace {
@@ -57,17 +58,58 @@ Expected<StudyFolder> StudyFolder::open(std::filesystem::path path) {
   return StudyFolder(std::move(path));
 }
 
-Expected<void> StudyFolder::write_table(std::string_view name, const ordered_json& rows) const {
+Expected<void> StudyFolder::write_table(std::string_view name, const ordered_json& rows,
+                                        std::string_view caption) const {
   RHEXIS_CHECK(rows.is_array() && !rows.empty(), "table '{}' without rows", name);
   const std::string stem(name);
   // A dump says null for what is not finite; read back, the same stands in both files.
-  const ordered_json clean = ordered_json::parse(rows.dump());
+  ordered_json clean = ordered_json::parse(rows.dump());
   if (Expected<void> done = write_atomically(path_ / (stem + ".csv"), csv(clean)); !done) return done;
-  return write_atomically(path_ / (stem + ".json"), clean.dump(2) + "\n");
+  if (Expected<void> done = write_atomically(path_ / (stem + ".json"), clean.dump(2) + "\n"); !done) return done;
+  keep(StudyTable{stem, std::string(caption), std::move(clean)});
+  return {};
 }
 
-Expected<void> StudyFolder::write_figure(std::string_view name, const result::Chart& chart) const {
-  return result::write_chart(path_ / (std::string(name) + ".svg"), chart);
+Expected<void> StudyFolder::write_figure(std::string_view name, const result::Chart& chart,
+                                         std::string_view caption) const {
+  const std::filesystem::path file = path_ / (std::string(name) + ".svg");
+  Expected<std::string> svg = result::chart_svg(chart);
+  if (!svg) return fail(svg.error().at(file.string()));
+  if (Expected<void> done = write_atomically(file, *svg); !done) return done;
+  keep(StudyFigure{std::string(name), std::string(caption), std::move(*svg)});
+  return {};
+}
+
+Expected<void> StudyFolder::write_shapes(std::string_view name, const result::ShapePicture& picture,
+                                         std::string_view caption) const {
+  std::string svg = result::shape_svg(picture);
+  if (Expected<void> done = write_atomically(path_ / (std::string(name) + ".svg"), svg); !done) return done;
+  keep(StudyShapes{std::string(name), std::string(caption), std::move(svg), picture});
+  return {};
+}
+
+void StudyFolder::note(std::string text) const { contents_->notes.push_back(std::move(text)); }
+
+void StudyFolder::compare(std::string_view id, const ordered_json& ours, const std::string& why) const {
+  ordered_json row = beside_published(id, ours, why);
+  for (ordered_json& before : contents_->published) {
+    if (before.at("id") != id) continue;
+    before = std::move(row);
+    return;
+  }
+  contents_->published.push_back(std::move(row));
+}
+
+void StudyFolder::keep(StudyItem item) const {
+  const auto name_of = [](const StudyItem& one) {
+    return std::visit([](const auto& inner) { return inner.name; }, one);
+  };
+  for (StudyItem& before : contents_->items) {
+    if (before.index() != item.index() || name_of(before) != name_of(item)) continue;
+    before = std::move(item);
+    return;
+  }
+  contents_->items.push_back(std::move(item));
 }
 
 }  // namespace rhexis::studies

@@ -22,7 +22,8 @@ TEST(StudyCommand, WritesItsFilesAndPrintsItsRows) {
   ASSERT_EQ(table.code, 0) << table.err;
   EXPECT_THAT(table.out, HasSubstr("ms_per_advance"));
   EXPECT_THAT(table.out, HasSubstr("slow-pull"));
-  for (const char* name : {"restructuring.csv", "restructuring.json", "restructuring.svg"})
+  EXPECT_THAT(table.out, HasSubstr("report.html"));
+  for (const char* name : {"restructuring.csv", "restructuring.json", "restructuring.svg", "study.json", "report.html"})
     EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << name;
 
   const test::Ran as_json = test::run_rhexis("--json " + arguments);
@@ -59,7 +60,21 @@ TEST(StudyCommand, MeasuresALiveSession) {
   EXPECT_EQ(test::run_rhexis("study live --seconds 1 --nodes 3" + out).code, 2);
 }
 
+TEST(StudyCommand, TheReportSaysHowItWasMade) {
+  const std::filesystem::path folder = test::fresh_folder("made");
+  const std::string arguments =
+      "study haptic-stability --stiffness 500 --delay 0 --seconds 2 --out '" + folder.string() + "'";
+  ASSERT_EQ(test::run_rhexis(arguments).code, 0);
+  const json about = json::parse(test::slurp(folder / "study.json"));
+  EXPECT_THAT(about["command"].get<std::string>(),
+              testing::StartsWith("rhexis study haptic-stability --stiffness 500"));
+  EXPECT_EQ(about["tables"], json({"haptic-stability"}));
+  EXPECT_THAT(test::slurp(folder / "report.html"), HasSubstr(about["versions"]["compiler"].get<std::string>()));
+}
+
 TEST(StudyCommand, HelpNamesTheWays) {
+  for (const char* name : {"identification", "stabilisation", "restructuring", "live", "all"})
+    EXPECT_THAT(test::run_rhexis("study --help").out, HasSubstr(name));
   EXPECT_THAT(test::run_rhexis("study restructuring --help").out, HasSubstr("exact-all-work"));
 }
 

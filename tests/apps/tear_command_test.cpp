@@ -155,5 +155,38 @@ TEST(TearCommand, JsonIsAllThatStdoutHolds) {
   EXPECT_EQ(json::parse(ran.out), json::parse(test::slurp(out / "summary.json")));
 }
 
+TEST(TearCommand, IsAnsweredByARecordAndSaysWhereItEnds) {
+  const fs::path out = test::fresh_folder("recorded");
+  const std::string scene = "scenes/plate-recorded.toml --set mesh.nodes=300 --set record.directions=5";
+  const std::string record = (out / "plate.h5").string();
+  const std::string command = "tear " + scene + " --set interaction.record=" + record + " --out " + out.string();
+  const test::Ran none = test::run_rhexis(command);
+  EXPECT_EQ(none.code, 2);
+  EXPECT_EQ(none.err, "rhexis: " + record +
+                          ": there is no such file (rhexis precompute scenes/plate-recorded.toml --out " + record +
+                          ")\n");
+
+  ASSERT_EQ(test::run_rhexis("precompute " + scene + " --out " + record).code, 0);
+  const test::Ran ran = test::run_rhexis(command + " --json");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const json summary = json::parse(ran.out);
+  EXPECT_EQ(summary["response"], "recorded");
+  const json& advances = summary["advances"];
+  ASSERT_GE(advances.size(), 4U);
+  EXPECT_TRUE(advances[0]["record"].is_null());  // the scene's crack is the record's topology 0
+  EXPECT_GT(advances[1]["record"]["topology"], 0);
+  EXPECT_FALSE(advances[2]["record"]["past_last"]);
+  EXPECT_TRUE(advances[3]["record"]["past_last"]);
+  EXPECT_EQ(advances[3]["record"]["topology"], advances[2]["record"]["topology"]);
+  const std::string said = "the crack has run on more often than the record knows";
+  const std::size_t first = ran.err.find(said);
+  ASSERT_NE(first, std::string::npos) << ran.err;
+  EXPECT_EQ(ran.err.find(said, first + 1), std::string::npos) << "said once";
+
+  const test::Ran other = test::run_rhexis(command + " --set material.young=2e6");
+  EXPECT_EQ(other.code, 2);
+  EXPECT_THAT(other.err, HasSubstr(record + ": the record of another material"));
+}
+
 }  // namespace
 }  // namespace rhexis

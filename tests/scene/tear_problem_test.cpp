@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/scene/scene_text.h"
+#include "tests/support/replaced.h"
 
 namespace rhexis::scene {
 namespace {
@@ -42,11 +43,7 @@ Expected<TearProblem> build(const std::string& text) {
   return build_tear_problem(*scene);
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
+using rhexis::test::replaced;
 
 TEST(TearProblem, HoldsWhatAnInteractionNeeds) {
   const Expected<TearProblem> problem = build(kPlate);
@@ -79,8 +76,8 @@ TEST(TearProblem, SaysWhatIsMissingOrCannotBe) {
       {"[fracture]", "[[pressure]]\nside = \"-x\"\nvalue = 10.0\n[fracture]",
        "s.toml:21: a pressure follows the surface, which the linear model cannot (a [[traction]] in a fixed "
        "direction)"},
-      {"[[crack]]", "[interaction]\nresponse = \"recorded\"\nrecord = \"a.h5\"\n[[crack]]",
-       "s.toml:22: response = \"recorded\" is not there yet (response = \"exact\")"},
+      {"[fracture]", "[interaction]\nresponse = \"recorded\"\nrecord = \"a.h5\"\n[fracture]\nincision = \"split\"",
+       "s.toml:23: incision 'split' adds nodes, and a record needs operators of one size (incision = \"keep-nodes\")"},
       {"[[support]]\nset = \"+x\"\nx = 0.0\ny = 0.0\nz = 0.0\n", "",
        "s.toml: nothing holds the body (add a [[support]])"}};
   for (const BadScene& bad : table) {
@@ -132,10 +129,13 @@ TEST(TearProblem, AHandIsHeldToWhatIsWrongForAll) {
       build_for_hand(replaced(kPlate, "[[support]]\nset = \"+x\"\nx = 0.0\ny = 0.0\nz = 0.0\n", ""));
   ASSERT_FALSE(free.has_value());
   EXPECT_EQ(free.error().message(), "s.toml: nothing holds the body (add a [[support]])");
-  const Expected<TearProblem> recorded = build_for_hand(
-      replaced(kPlate, "[[crack]]", "[interaction]\nresponse = \"recorded\"\nrecord = \"a.h5\"\n[[crack]]"));
-  ASSERT_FALSE(recorded.has_value());
-  EXPECT_EQ(recorded.error().message(), "s.toml:22: response = \"recorded\" is not there yet (response = \"exact\")");
+  const std::string of_a_record = "[interaction]\nresponse = \"recorded\"\nrecord = \"a.h5\"\n";
+  EXPECT_TRUE(build_for_hand(replaced(kPlate, "[[crack]]", of_a_record + "[[crack]]")).has_value());
+  const Expected<TearProblem> corotated =
+      build_for_hand(replaced(replaced(kPlate, "\"linear\"", "\"corotated\""), "[[crack]]", of_a_record + "[[crack]]"));
+  ASSERT_FALSE(corotated.has_value());
+  EXPECT_EQ(corotated.error().message(),
+            "s.toml:11: a body with model 'corotated' cannot be torn yet (kind = \"linear\")");
 }
 
 TEST(TearProblem, PushAndBlendAreRead) {

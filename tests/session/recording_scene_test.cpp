@@ -36,6 +36,20 @@ TEST(RecordedScene, KeepsItsMeshFile) {
   }
 }
 
+TEST(RecordedScene, NamesItsRecord) {
+  SceneChoice with_record = kScene;
+  with_record.record = 0x0123456789abcdefULL;
+  const Expected<SceneChoice> scene = parse_scene_choice(bytes_of(with_record));
+  ASSERT_TRUE(scene.has_value());
+  EXPECT_EQ(scene->record, with_record.record);
+  EXPECT_EQ(parse_scene_choice(bytes_of(kScene))->record, 0U);
+  for (const char* bad : {"", "0123", "0123456789abcdeg", "0123456789abcdef0", "-123456789abcdef"}) {
+    Json json = Json::from_cbor(bytes_of(with_record));
+    json["record"] = binary(bad);
+    EXPECT_FALSE(parse_scene_choice(Json::to_cbor(json)).has_value()) << bad;
+  }
+}
+
 TEST(RecordedScene, CutOffOrOfAnotherFormIsRefused) {
   const std::vector<std::uint8_t> whole = bytes_of(kScene);
   for (std::size_t size = 0; size < whole.size(); ++size)

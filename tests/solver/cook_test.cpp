@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 
+#include "model/refine.h"
 #include "model/stabilisation.h"
 #include "tests/solver/stabilisation_bodies.h"
 #include "tests/support/measured.h"
@@ -32,7 +33,7 @@ TEST(CookMembrane, AutoNeitherLocksNorOscillates) {
   const int levels = std::getenv("RHEXIS_FULL") == nullptr ? 2 : 3;
   const test::StudyBody body = test::make_cook_body(4);
   std::vector<mesh::TetMesh> meshes{body.mesh};
-  while (static_cast<int>(meshes.size()) < levels) meshes.push_back(test::refine(meshes.back()));
+  while (static_cast<int>(meshes.size()) < levels) meshes.push_back(model::refine(meshes.back()));
   const mesh::TetMesh& finest = meshes.back();
   const test::Answer answer = test::solve(body, finest, kPoisson, model::ModelKind::taylor_hood, 0.0);
   const double true_tip = tip(finest, answer);

@@ -13,6 +13,7 @@
 #include "mesh/generate.h"
 #include "mesh/quality.h"
 #include "mesh/validate.h"
+#include "model/refine.h"
 #include "model/stabilisation.h"
 #include "tests/solver/stabilisation_bodies.h"
 #include "tests/support/measured.h"
@@ -82,7 +83,7 @@ TEST_P(AutoBetaStudy, IsNearTheBestOfTheSweep) {
   const auto& [named, nu] = GetParam();
   const test::StudyBody body = named.make();
   const material::MooneyRivlin law = material::to_mooney_rivlin({body.young, nu});
-  const mesh::TetMesh fine = test::refine(body.mesh);
+  const mesh::TetMesh fine = model::refine(body.mesh);
   const test::Answer reference =
       test::seen_on(body.mesh, fine, test::solve(body, fine, nu, model::ModelKind::taylor_hood, 0.0));
 
@@ -157,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(All, AutoBetaStudy, testing::ValuesIn(cases()), [](cons
 TEST(StudyBodies, MeshesAndTheirRefinementsAreSoundAndFillTheSame) {
   for (const NamedBody& named : bodies()) {
     const mesh::TetMesh mesh = named.make().mesh;
-    const mesh::TetMesh fine = test::refine(mesh);
+    const mesh::TetMesh fine = model::refine(mesh);
     EXPECT_TRUE(mesh::find_defects(mesh).empty()) << named.name;
     EXPECT_TRUE(mesh::find_defects(fine).empty()) << named.name;
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
@@ -173,7 +174,7 @@ TEST(StudyBodies, MeshesAndTheirRefinementsAreSoundAndFillTheSame) {
 // differ a hundredfold lose the same; at equal beta they do not.
 TEST(SmoothingLength, DecidesWhatIsLostAndBetaDoesNot) {
   const test::StudyBody body = test::make_cook_body(4);
-  const mesh::TetMesh fine = test::refine(body.mesh);
+  const mesh::TetMesh fine = model::refine(body.mesh);
   std::vector<double> lengths, by_length, by_beta;
   for (const auto& [nu, beta] : {std::pair{0.49, 10.0}, {0.499, 100.0}, {0.4999, 1000.0}}) {
     const test::Answer reference =

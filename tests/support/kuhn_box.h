@@ -1,8 +1,7 @@
 #pragma once
 
 /// Meshes for studies of the pressure stabilisation: grids of cells cut into six tets each, mirrored from cell to cell
-/// so that no diagonal is preferred, inner nodes moved a little so that no mode lives from symmetry; and their
-/// refinement, whose nodes begin with the nodes of the coarse mesh and whose tets 8 e .. 8 e + 7 fill the coarse tet e.
+/// so that no diagonal is preferred, inner nodes moved a little so that no mode lives from symmetry.
 
 #include <algorithm>
 #include <array>
@@ -11,7 +10,6 @@
 #include <functional>
 
 #include "mesh/tet_mesh.h"
-#include "model/space.h"
 
 namespace rhexis::test {
 
@@ -43,7 +41,8 @@ class Shift {
   std::uint64_t state_ = 1;
 };
 
-/// Which two vertices are swapped matters to `refine`, which chooses between diagonals of equal length by their order.
+/// Which two vertices are swapped matters to model::refine, which chooses between diagonals of equal length by their
+/// order.
 inline void orient(mesh::TetMesh& mesh) {
   for (std::size_t t = 0; t < mesh.tet_count(); ++t)
     if (mesh::signed_volume(mesh, TetId(t)) < 0.0) std::swap(mesh.tets[t][1], mesh.tets[t][2]);
@@ -87,44 +86,6 @@ inline mesh::TetMesh make_kuhn_box(const KuhnGrid& grid) {
         }
   detail::orient(mesh);
   return mesh;
-}
-
-/// Eight tets of each: four at the corners, four around the shortest diagonal of the octahedron that is left. Straight
-/// sides stay straight. Sets are not carried over.
-inline mesh::TetMesh refine(const mesh::TetMesh& coarse) {
-  const model::EdgeTable table = model::find_edges(coarse);
-  mesh::TetMesh fine;
-  fine.nodes = coarse.nodes;
-  for (const auto& [a, b] : table.edges) fine.nodes.push_back(0.5 * (coarse.node(a) + coarse.node(b)));
-
-  for (std::size_t t = 0; t < coarse.tet_count(); ++t) {
-    const auto& [a, b, c, d] = coarse.tets[t];
-    std::array<NodeId, 6> middle;  // in the order of mesh::kTetEdges: ab ac ad bc bd cd
-    for (std::size_t e = 0; e < 6; ++e)
-      middle[e] = NodeId(coarse.node_count() + static_cast<std::size_t>(table.of_tet[t][e]));
-    const auto& [ab, ac, ad, bc, bd, cd] = middle;
-    for (const mesh::Tet& corner :
-         {mesh::Tet{a, ab, ac, ad}, mesh::Tet{b, ab, bc, bd}, mesh::Tet{c, ac, bc, cd}, mesh::Tet{d, ad, bd, cd}})
-      fine.tets.push_back(corner);
-
-    struct Diagonal {
-      NodeId from, to;
-      std::array<NodeId, 4> ring;
-    };
-    const std::array<Diagonal, 3> diagonals{
-        {{ab, cd, {ac, bc, bd, ad}}, {ac, bd, {ab, bc, cd, ad}}, {ad, bc, {ab, ac, cd, bd}}}};
-    // Rounded, so that diagonals of equal length are chosen between by their order and not by the last bit.
-    const double unit = 1e-9 * (coarse.node(a) - coarse.node(b)).norm();
-    const auto length = [&](const Diagonal& x) {
-      return std::round((fine.node(x.from) - fine.node(x.to)).norm() / unit);
-    };
-    const Diagonal& shortest = *std::min_element(diagonals.begin(), diagonals.end(),
-                                                 [&](const auto& x, const auto& y) { return length(x) < length(y); });
-    for (std::size_t r = 0; r < 4; ++r)
-      fine.tets.push_back({shortest.from, shortest.to, shortest.ring[r], shortest.ring[(r + 1) % 4]});
-  }
-  detail::orient(fine);
-  return fine;
 }
 
 }  // namespace rhexis::test

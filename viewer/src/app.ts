@@ -3,6 +3,7 @@ import { Headset } from "./hand/headset";
 import { Keyboard } from "./hand/keyboard";
 import { Pointer } from "./hand/pointer";
 import { AdvancesTable } from "./panel/advances_table";
+import { ComparisonPanel } from "./panel/comparison_panel";
 import { byId, make, setText } from "./panel/dom";
 import { ForcePanel } from "./panel/force_panel";
 import { ForcePlot } from "./panel/force_plot";
@@ -41,6 +42,7 @@ export class App implements Listener {
   private readonly status = new StatusBar(this.send, () => this.socket.tryNow());
   private readonly force = new ForcePanel();
   private readonly plot = new ForcePlot(byId("force-plot", HTMLDivElement));
+  private readonly comparison = new ComparisonPanel(this.send);
   private readonly legend = new Legend();
   private readonly scene = new ScenePanel(this.send);
   private readonly advances = new AdvancesTable();
@@ -76,7 +78,10 @@ export class App implements Listener {
 
   frame(frame: ServerFrame): void {
     const change = this.store.take(frame);
-    if (frame.kind === "notice" && frame.notice.level !== Level.info) this.scene.restore();
+    if (frame.kind === "notice" && frame.notice.level !== Level.info) {
+      this.scene.restore();
+      this.comparison.restore();
+    }
     this.react(change);
   }
 
@@ -153,7 +158,8 @@ export class App implements Listener {
     const { store, stage } = this;
     const mayAct = this.link.kind === "open" && store.hasHand;
     this.force.show(store.state);
-    this.plot.show(store.trace, store.advances.map((advance) => advance.time), store.body?.maxForce ?? 0);
+    this.comparison.show(store.body, store.state, mayAct, store.hello?.replay ?? false);
+    this.plot.show(store.trace, store.own, store.compared, store.advances.map((advance) => advance.time), store.body?.maxForce ?? 0);
     this.loops.show(store.state?.rates ?? null, this.socket.roundTrip);
     this.advances.show(store.advances);
     // The scene's own cracks, of time 0, are not taken back.

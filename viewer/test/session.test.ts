@@ -30,6 +30,30 @@ describe("The store", () => {
     expect(kept.frames).toBe(6);
   });
 
+  it("keeps the force that is compared while it is, and which response answers", () => {
+    const { store: kept, take } = store();
+    const plate = new Plate();
+    const body = plate.body(3, 0, "a");
+    body.response = "recorded";
+    body.hasRecord = true;
+    take(wire.Payload.Body, body);
+    expect(kept.body?.response).toBe("recorded");
+    expect(kept.body?.hasRecord).toBe(true);
+    const compared = restingState(plate, 3, 0, 10);
+    compared.comparedForce = new wire.Vec3T(0, 3, 4);
+    compared.bodyForce = new wire.Vec3T(6, 0, 8);
+    compared.record = new wire.RecordUseT(7, true, false, false);
+    take(wire.Payload.State, compared);
+    expect(kept.state?.comparedForce).toEqual([0, 3, 4]);
+    expect(kept.state?.record).toEqual({ topology: 7, outside: true, pastLast: false, tornOff: false });
+    expect(kept.compared.columns(500, 11).size.filter((n) => n === 5).length).toBe(1);
+    expect(kept.own.columns(500, 11).size.filter((n) => n === 10).length).toBe(1);
+    take(wire.Payload.State, restingState(plate, 3, 0, 30));
+    expect(kept.state?.comparedForce).toBe(null);
+    expect(kept.state?.record).toBe(null);
+    expect(kept.compared.columns(500, 31).size.every((n) => Number.isNaN(n))).toBe(true);
+  });
+
   it("takes no state of another topology, and forgets the state with the body", () => {
     const { store: kept, take } = store();
     const plate = new Plate();
@@ -94,6 +118,17 @@ describe("The trace", () => {
     expect(time[0]).toBeCloseTo(5, 9);
   });
 
+  it("holds a force from state to state, and ends where another trace does", () => {
+    const trace = new ForceTrace();
+    trace.holdTo(19, [1, 0, 0]);
+    trace.holdTo(59, [2, 0, 0]);
+    trace.holdTo(2019, [3, 0, 0]); // long after: nothing is known of between
+    const { size } = trace.columns(500, 2040);
+    expect(size.filter((n) => n === 2).length).toBe(2);
+    expect(size.filter((n) => n === 3).length).toBe(1);
+    expect(Number.isNaN(size[499])).toBe(true);
+  });
+
   it("starts over when the clock goes back", () => {
     const trace = new ForceTrace();
     trace.add(5000, forces(4, 4));
@@ -125,6 +160,15 @@ describe("Troubles", () => {
     expect(situation(late)).toEqual([["late", "The physics is late: the force is that of the body 250 ms ago."]]);
     expect(situation((state) => (late(state), (state.paused = true), undefined))).toEqual([]);
     expect(situation((state) => void (state.rates = new wire.RatesT(4, 300, 1000, 10, 0n, 50, true)))[0]?.[1]).toContain("took 300 ms");
+  });
+
+  it("name what the record does not know", () => {
+    const use = (outside: boolean, pastLast: boolean, tornOff: boolean) => (state: wire.StateT) =>
+      void (state.record = new wire.RecordUseT(124, outside, pastLast, tornOff));
+    expect(situation(use(false, false, false))).toEqual([]);
+    expect(situation(use(true, true, false))).toEqual([["record", "The crack is outside the record: the nearest, topology 124 of it answers."]]);
+    expect(situation(use(false, true, false))[0]?.[1]).toBe("The crack has run on more often than the record knows: topology 124 of it answers.");
+    expect(situation(use(false, false, true)).map(([id]) => id)).toEqual(["record-point"]);
   });
 
   it("name the pieces, the limit of the device, and who has the hand", () => {

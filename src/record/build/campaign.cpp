@@ -19,23 +19,25 @@ std::span<const Value> one(const Value& value) {
   return {&value, 1};
 }
 
-std::uint64_t make_fingerprint(const CampaignRequest& request, const store::RecordHead& head) {
+}  // namespace
+
+std::uint64_t fingerprint_of(const CampaignRequest& request) {
   const response::ElasticBody& body = request.elastic;
   Hash hash;
-  hash.add(one(kMethod)).add(std::span<const char>(head.program)).add(std::span<const double>(head.nodes));
-  hash.add(std::span<const std::int32_t>(head.tets));
+  hash.add(one(kMethod)).add(std::span<const char>(request.program));
+  for (const Vec3& x : request.mesh.nodes) hash.add(numbers(x));
+  for (const mesh::Tet& tet : request.mesh.tets)
+    for (const NodeId node : tet) hash.add(one(node.value()));
   for (const double value : {body.elastic.young, body.elastic.poisson, body.density}) hash.add(one(value));
   hash.add(numbers(body.gravity));
   for (const model::PrescribedDof& support : body.supports) hash.add(one(support.dof)).add(one(support.value));
   hash.add(std::span<const double>(body.dead_force.data(), static_cast<std::size_t>(body.dead_force.size())));
   hash.add(numbers(request.crack.from)).add(numbers(request.crack.to)).add(numbers(request.crack.through));
-  const store::Parameters& parameters = head.parameters;
+  const store::Parameters& parameters = request.parameters;
   for (const int value : {parameters.advances, parameters.directions, parameters.pull_directions}) hash.add(one(value));
   hash.add(std::span<const double>(parameters.lengths)).add(one(parameters.pull_length));
-  return hash.add(one(head.single_precision)).value();
+  return hash.add(one(request.single_precision)).value();
 }
-
-}  // namespace
 
 Campaign::Campaign(CampaignRequest request, std::unique_ptr<const Recorder> recorder, FactoredState first)
     : request_(std::move(request)), recorder_(std::move(recorder)), first_(std::move(first)) {
@@ -48,7 +50,7 @@ Campaign::Campaign(CampaignRequest request, std::unique_ptr<const Recorder> reco
 
 void Campaign::take_parameters() {
   head_.parameters = request_.parameters;
-  head_.fingerprint = make_fingerprint(request_, head_);
+  head_.fingerprint = fingerprint_of(request_);
 }
 
 Expected<Campaign> Campaign::plan(CampaignRequest request) {

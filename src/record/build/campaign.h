@@ -28,6 +28,10 @@ struct CampaignRequest {
   std::string title;
 };
 
+/// What tells one record from another: a hash of the mesh, the material, the supports, the loads, the crack, the
+/// parameters, the precision, the program and the method.
+[[nodiscard]] std::uint64_t fingerprint_of(const CampaignRequest& request);
+
 enum class Ending {
   complete,         ///< this process put the record together
   was_there,        ///< the file is there already, of the same fingerprint

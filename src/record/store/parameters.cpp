@@ -21,6 +21,7 @@ std::vector<double> pull_angles(const Parameters& parameters) {
 
 std::int64_t Numbering::count_of(const Parameters& parameters) {
   const auto each = std::int64_t{parameters.directions} * static_cast<std::int64_t>(parameters.lengths.size());
+  if (each > kMostTopologies) return kMostTopologies + 1;
   std::int64_t level = 1;
   std::int64_t sum = 1;
   for (int k = 0; k < parameters.advances; ++k) {

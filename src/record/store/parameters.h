@@ -42,7 +42,7 @@ class Numbering {
  public:
   /// RHEXIS_CHECK: at most kMostAdvances, and count_of at most kMostTopologies.
   explicit Numbering(const Parameters& parameters);
-  /// 1 + sum over i = 1..Ncp of (Ncd Ncl)^i; kMostTopologies + 1 when it is more than that.
+  /// 1 + sum over i = 1..Ncp of (Ncd Ncl)^i; kMostTopologies + 1 when it is more than that, or Ncd Ncl alone is.
   [[nodiscard]] static std::int64_t count_of(const Parameters& parameters);
 
   [[nodiscard]] int count() const { return first_.back(); }

@@ -1,10 +1,7 @@
 #include "record/store/reaction.h"
 
-#include <array>
 #include <cmath>
 #include <numbers>
-
-#include "record/store/axis.h"
 
 namespace rhexis::record::store {
 namespace {
@@ -56,34 +53,25 @@ Vec3 Lookup::recorded_in(int topology, int point, const Vec3& pull) const {
 }
 
 Reaction Lookup::reaction(std::span<const Advanced> advances, int point, const Vec3& pull) const {
-  const std::vector<double>& lengths = record_.head.parameters.lengths;
   Reaction out;
-  const std::span<const Advanced> used = counted(advances);
-  out.past_last = used.size() < advances.size();
   out.out_of_plane = std::abs(pull.dot(record_.head.frame.z)) > kInPlane * pull.norm();
-  std::array<Neighbours, kMostAdvances> w;
-  std::array<Neighbours, kMostAdvances> u;
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    w[i] = neighbours_on(angles_, used[i].angle);
-    u[i] = neighbours_on(lengths, used[i].length);
-    if (lengths.size() == 1) u[i].outside = false;  // the one length stands for all
-    out.outside = out.outside || w[i].outside || u[i].outside;
-  }
-  // Bit 2 i of a term says which neighbour in angle of advance i it takes, bit 2 i + 1 which in length.
-  const std::uint64_t terms = std::uint64_t{1} << (2 * used.size());
-  for (std::uint64_t term = 0; term < terms; ++term) {
-    double weight = 1.0;
-    int topology = 0;
-    for (std::size_t i = 0; i < used.size() && weight != 0.0; ++i) {
-      const std::size_t a = term >> (2 * i) & 1U;
-      const std::size_t b = term >> (2 * i + 1) & 1U;
-      weight *= w[i].weight[a] * u[i].weight[b];
-      topology = numbering_.child(topology, {w[i].index[a], u[i].index[b]});
-    }
-    if (weight == 0.0) continue;
+  const Between between = each_topology(advances, [&](int topology, double weight) {
     out.torn_off = out.torn_off || !record_.is_in_solve(topology, point);
     out.force += weight * recorded_in(topology, point, pull);
-  }
+  });
+  out.outside = between.outside;
+  out.past_last = between.past_last;
+  return out;
+}
+
+Stiffness Lookup::stiffness(std::span<const Advanced> advances, int point) const {
+  Stiffness out;
+  const Between between = each_topology(advances, [&](int topology, double weight) {
+    out.torn_off = out.torn_off || !record_.is_in_solve(topology, point);
+    out.value += weight * record_.stiffness_at(topology, point);
+  });
+  out.outside = between.outside;
+  out.past_last = between.past_last;
   return out;
 }
 

@@ -33,6 +33,18 @@ bool all_within(const std::vector<std::int32_t>& values, std::size_t count) {
                      [&](std::int32_t value) { return value >= 0 && static_cast<std::size_t>(value) < count; });
 }
 
+bool ascends(const std::vector<std::int32_t>& values) {
+  return std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
+}
+
+/// The diagonal of a Cholesky factor, by which is divided, is above zero.
+template <class Value>
+bool is_factor(const OperatorPattern& pattern, const std::vector<Value>& values) {
+  return all_finite(values) && std::all_of(pattern.start.begin(), pattern.start.end() - 1, [&](std::int64_t diagonal) {
+           return values[static_cast<std::size_t>(diagonal)] > 0;
+         });
+}
+
 /// From 0, never descending, to `end`.
 bool are_offsets(const std::vector<std::int64_t>& start, std::size_t end) {
   return !start.empty() && start.front() == 0 && std::is_sorted(start.begin(), start.end()) &&
@@ -206,8 +218,7 @@ Expected<void> RecordFile::read_body() {
   for (Expected<std::vector<std::int32_t>>* list : {&corners, &grasp, &pairs})
     if (!*list) return fail(std::move(list->error()));
   if (!all_finite(*X) || !all_within(*corners, *nodes)) return wrong("its mesh is none");
-  if (!all_within(*grasp, *nodes) || !all_within(*pairs, *points) ||
-      std::adjacent_find(grasp->begin(), grasp->end(), std::greater_equal<>()) != grasp->end())
+  if (!all_within(*grasp, *nodes) || !all_within(*pairs, *points) || !ascends(*grasp))
     return wrong("its grasp points or their edges are none");
   head_.nodes = std::move(*X);
   head_.tets = std::move(*corners);
@@ -326,9 +337,12 @@ Expected<TopologyData> RecordFile::read_topology(int topology) const {
        out.moved_to);
   if (!done) return fail(std::move(done.error()));
   out.flags = flags.front();
-  const bool finite = std::visit([](const auto& values) { return all_finite(values); }, out.factor);
-  if (!finite || !all_finite(out.stiffness) || !all_finite(out.compliance) || !all_finite(out.rest) ||
-      !all_finite(out.moved_to))
+  const auto is_good_factor = [&](const auto& values) { return is_factor(head_.pattern, values); };
+  if (!std::visit(is_good_factor, out.factor))
+    return wrong(fmt::format("the operator of topology {} is none", topology));
+  if (!ascends(out.moved_nodes) || !ascends(out.gone_tets) || !ascends(out.frozen_tets))
+    return wrong(fmt::format("the edits of topology {} are not in order", topology));
+  if (!all_finite(out.stiffness) || !all_finite(out.compliance) || !all_finite(out.rest) || !all_finite(out.moved_to))
     return wrong(fmt::format("topology {} holds what is not a number", topology));
   return out;
 }

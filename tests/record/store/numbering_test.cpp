@@ -65,6 +65,9 @@ TEST(Numbering, IsThatOfAListWrittenOut) {
 TEST(Numbering, SaysWhenThereAreTooMany) {
   EXPECT_EQ(Numbering::count_of(parameters(8, 1441, {0.1})), kMostTopologies + 1);
   EXPECT_EQ(Numbering::count_of(parameters(8, 1, {0.1})), 9);
+  // Also of those that no advance makes use of: Ncd Ncl is an int.
+  EXPECT_EQ(Numbering::count_of(parameters(0, 100'000, std::vector<double>(50'000, 0.1))), kMostTopologies + 1);
+  EXPECT_EQ(Numbering::count_of(parameters(0, 13, {0.1})), 1);
 }
 
 }  // namespace

@@ -124,6 +124,33 @@ TEST(Reaction, NearestIsTheLeastDifferenceInEveryDimension) {
   }
 }
 
+TEST(Reaction, IsThatOfTheStiffnessForPullsInTheDirectionsOfTheRecord) {
+  const Record record = test::some_record(parameters(), false, false).record();
+  const Lookup lookup(record);
+  const std::array<Advanced, 3> advances{Advanced{12.0, 0.021}, Advanced{100.0, 0.09}, Advanced{80.0, 0.03}};
+  for (std::size_t n = 0; n <= 3; ++n) {
+    const std::span<const Advanced> so_far = std::span(advances).first(n);
+    double weights = 0.0;
+    lookup.each_topology(so_far, [&](int /*topology*/, double weight) { weights += weight; });
+    EXPECT_NEAR(weights, 1.0, 1e-15);
+    for (int point = 0; point < 3; ++point) {
+      const Stiffness stiffness = lookup.stiffness(so_far, point);
+      for (const double angle : pull_angles(record.head.parameters)) {
+        const Vec3 pull = pull_at(record.head.frame, angle, 0.05);
+        const Reaction reaction = lookup.reaction(so_far, point, pull);
+        EXPECT_LT((stiffness.value * pull - reaction.force).norm(), 1e-13 * reaction.force.norm());
+        EXPECT_EQ(stiffness.outside, reaction.outside);
+        EXPECT_EQ(stiffness.past_last, reaction.past_last);
+        EXPECT_EQ(stiffness.torn_off, reaction.torn_off);
+      }
+      // In between, (4.14) takes the chord of two recorded reactions: short by no more than 1 - cos of half their
+      // angle, and by what the stiffness makes of the pull that is left out.
+      const Vec3 between = pull_at(record.head.frame, 22.5, 0.05);
+      EXPECT_NE(stiffness.value * between, lookup.reaction(so_far, point, between).force);
+    }
+  }
+}
+
 TEST(Reaction, AsksForNoMemory) {
 #ifndef RHEXIS_COUNTS_MALLOC
   GTEST_SKIP() << "the sanitizer has its own malloc";
@@ -138,6 +165,7 @@ TEST(Reaction, AsksForNoMemory) {
   const long before = rhexis::test::allocations;
   for (std::size_t n = 0; n <= 3; ++n) {
     sum += lookup.reaction(std::span(advances).first(n), 0, pull).force;
+    sum += lookup.stiffness(std::span(advances).first(n), 0).value * pull;
     sum[0] += lookup.nearest(std::span(advances).first(n)).topology;
   }
   EXPECT_EQ(rhexis::test::allocations, before);

@@ -136,11 +136,13 @@ TEST(RecordFile, RefusesNumbersThatAreNone) {
       {"start", [&] { spoil<std::int64_t>(path, "operator/start", 1, 40); }},
       {"row", [&] { spoil<std::int32_t>(path, "operator/row", 1, 4); }},
       {"factor", [&] { spoil<double>(path, "operator/factor", 3, none); }},
+      {"diagonal", [&] { spoil<double>(path, "operator/factor", 2, 0.0); }},
       {"stiffness", [&] { spoil<double>(path, "topologies/stiffness", 3, HUGE_VAL); }},
       {"compliance", [&] { spoil<double>(path, "topologies/compliance", 3, none); }},
       {"rest", [&] { spoil<double>(path, "topologies/rest", 3, none); }},
       {"moved_start", [&] { spoil<std::int64_t>(path, "edits/moved_start", 3, -1); }},
       {"moved_node", [&] { spoil<std::int32_t>(path, "edits/moved_node", 0, 99); }},
+      {"order of moved_node", [&] { spoil<std::int32_t>(path, "edits/moved_node", 2, 1); }},
       {"gone_tet", [&] { spoil<std::int32_t>(path, "edits/gone_tet", 0, 2); }},
   };
   for (const auto& [name, way] : ways) {

@@ -1,3 +1,4 @@
+import { execFileSync } from "node:child_process";
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 
@@ -7,10 +8,10 @@ import { afterAll, afterEach, beforeAll, describe, expect, it } from "vitest";
 import { forceText } from "../../src/base/format";
 import { length } from "../../src/base/vec3";
 import { Field } from "../../src/wire/rhexis_generated";
-import { launch, open, pixelOf, shoot, textOf, until, type Look } from "../support/browser";
+import { kRepository, launch, open, pixelOf, shoot, textOf, until, type Look } from "../support/browser";
 import { aim, enterHeadset, leaveHeadset, openWithHeadset, trigger } from "../support/headset";
 import { Listener } from "../support/listener";
-import { Program, freePort, kScratch } from "../support/program";
+import { Program, freePort, kCommand, kScratch } from "../support/program";
 
 /** The page and the program together: what a person does with `make play`. */
 let browser: Browser;
@@ -261,5 +262,57 @@ describe("rhexis replay", () => {
     if ((await textOf(page, "#replay-play")) === "Play") await page.click("#replay-play");
     await page.waitForFunction((topology) => window.rhexis?.surface.topology === topology, torn);
     await shoot(page, "replay-light");
+  });
+});
+
+describe("rhexis play with a record", () => {
+  const kRecorded = "scenes/plate-recorded.toml";
+  const percentShown = async (): Promise<number> => parseFloat((await textOf(page, "#force-legend .difference")).replace("Difference", ""));
+
+  it("shows the exact force beside the recorded one, and says where the record ends", async () => {
+    await page.close();
+    await program.kill();
+    const record = join(kScratch, "plate-record.h5");
+    execFileSync(kCommand, ["precompute", kRecorded, "--quiet", "--out", record], { cwd: kRepository, stdio: "ignore" });
+    program = await Program.start(["play", kRecorded, "--set", `interaction.record=${record}`], await freePort());
+    await visit();
+    await until(page, (handle) => handle.body?.response === "recorded" && handle.state?.record?.topology === 0);
+    expect(await textOf(page, "#compare-row")).toContain("Exact force beside it");
+    expect(await page.isVisible("#force-legend")).toBe(false);
+    await page.click("#compare");
+    await until(page, (handle) => handle.state?.comparedForce != null);
+    await page.waitForSelector("#force-legend:visible");
+    expect(await page.isChecked("#compare")).toBe(true);
+    expect(await textOf(page, "#force-legend .own")).toMatch(/^Recorded [\d.]+ N$/);
+    expect(await textOf(page, "#force-legend .other")).toMatch(/^Exact [\d.]+ N$/);
+
+    // Before it tears the two are one: the record has that body.
+    const [x, y] = await pixelOf(page, kBeside);
+    await page.mouse.move(x + 2, y - 3);
+    await page.mouse.down();
+    await until(page, (handle) => handle.state?.held === true);
+    await page.mouse.move(x - 2, y - 3, { steps: 4 });
+    await until(page, (handle) => Math.hypot(...(handle.state?.bodyForce ?? [0])) > 0.1);
+    await expect.poll(percentShown).toBeCloseTo(0, 2);
+    expect(await page.evaluate(() => window.rhexis?.state?.advances)).toBe(1);
+    await page.mouse.up();
+    await until(page, (handle) => handle.state?.held === false);
+
+    await tear(3);
+    await expect.poll(percentShown).toBeGreaterThan(0.01);
+    await page.waitForSelector('[data-trouble="record"]');
+    await expect.poll(() => textOf(page, "#messages")).toContain("more often than the record knows");
+    await shoot(page, "play-recorded-light");
+    await page.mouse.up();
+    await page.click("#compare");
+    await until(page, (handle) => handle.state !== null && handle.state.comparedForce === null);
+    await page.waitForSelector("#force-legend", { state: "hidden" });
+  });
+
+  it("has nothing to compare in a scene without a record", async () => {
+    await page.selectOption("#scene", kPlate);
+    await page.click("#open-scene");
+    await until(page, (handle) => handle.body?.response === "exact" && handle.state !== null);
+    await page.waitForSelector("#compare-row", { state: "hidden" });
   });
 });

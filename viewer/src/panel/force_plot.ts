@@ -11,7 +11,7 @@ const kHeight = 150; // px
 
 const cssColour = (name: string) => (): string => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-/** Force over the last seconds: its size, and thinner its components; the advances as upright lines. */
+/** Force over the last seconds: its size, thinner its components, and that of another response; the advances as upright lines. */
 export class ForcePlot {
   private readonly plot: uPlot;
   private advances: readonly number[] = []; // s
@@ -39,10 +39,10 @@ export class ForcePlot {
           { ...axis(), size: 28, values: (plot, ticks) => ticks.map((t) => `${Math.round(t - (plot.scales["x"]?.max ?? 0)) || 0} s`), splits: (plot) => this.seconds(plot) },
           { ...axis(), size: 48, values: (_, ticks) => ticks.map((n) => `${Math.round(n * 100) / 100} N`) },
         ],
-        series: [{}, thin("x", "--x"), thin("y", "--y"), thin("z", "--z"), { label: "force", stroke: cssColour("--force"), width: 2, points: { show: false } }],
+        series: [{}, thin("x", "--x"), thin("y", "--y"), thin("z", "--z"), { label: "force", stroke: cssColour("--force"), width: 2, points: { show: false } }, { label: "compared", stroke: cssColour("--compared"), width: 2, dash: [6, 3], points: { show: false } }],
         hooks: { drawClear: [(plot) => this.drawMarks(plot)] },
       },
-      [[0], [0], [0], [0], [0]],
+      [[0], [0], [0], [0], [0], [0]],
       frame,
     );
     const canvas = frame.querySelector("canvas");
@@ -51,7 +51,8 @@ export class ForcePlot {
     new ResizeObserver(() => this.plot.setSize({ width: Math.max(200, frame.clientWidth), height: kHeight })).observe(frame);
   }
 
-  show(trace: ForceTrace, advances: readonly number[], limit: number, force = false): void {
+  /** `own` is drawn in the place of the length of `trace` where it is known: as little cut as `compared`. */
+  show(trace: ForceTrace, own: ForceTrace, compared: ForceTrace, advances: readonly number[], limit: number, force = false): void {
     const now = performance.now();
     if (!force && (now - this.drawnAt < kEvery || this.frame.clientWidth === 0)) return;
     this.drawnAt = now;
@@ -61,7 +62,9 @@ export class ForcePlot {
     const end = trace.time;
     // uPlot leaves a gap for null, and takes NaN for a number.
     const gaps = (column: Float64Array) => Array.from(column, (value) => (Number.isNaN(value) ? null : value));
-    const data = [Array.from(columns.time), ...columns.along.map(gaps), gaps(columns.size)] as uPlot.AlignedData;
+    const at = (other: ForceTrace) => other.columns(kPoints, trace.endTick).size;
+    const size = at(own).map((value, k) => (Number.isNaN(value) ? (columns.size[k] ?? NaN) : value));
+    const data = [Array.from(columns.time), ...columns.along.map(gaps), gaps(size), gaps(at(compared))] as uPlot.AlignedData;
     this.plot.setData(data, false);
     this.plot.batch(() => {
       this.plot.setScale("x", { min: end - kTraceSeconds, max: end });

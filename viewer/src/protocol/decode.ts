@@ -2,7 +2,7 @@ import * as flatbuffers from "flatbuffers";
 
 import { kZero, type Vec3 } from "../base/vec3";
 import * as wire from "../wire/rhexis_generated";
-import type { Advance, Body, Edit, Front, Hello, Notice, Rates, Recorded, Role, ServerFrame, State, Timeline } from "./messages";
+import type { Advance, Body, Edit, Front, Hello, Notice, Rates, Recorded, RecordUse, Role, ServerFrame, State, Timeline } from "./messages";
 
 const kNoFloats = new Float32Array(0);
 const kNoIndices = new Uint32Array(0);
@@ -100,6 +100,8 @@ function readBody(body: wire.Body): Body {
     maxForce: body.maxForce(),
     values: text(body.values()),
     script: body.script(),
+    response: text(body.response()),
+    hasRecord: body.hasRecord(),
   };
 }
 
@@ -134,7 +136,13 @@ function readRates(rates: wire.Rates | null): Rates | null {
   };
 }
 
+function readRecordUse(use: wire.RecordUse | null): RecordUse | null {
+  if (use === null) return null;
+  return { topology: use.topology(), outside: use.outside(), pastLast: use.pastLast(), tornOff: use.tornOff() };
+}
+
 function readState(state: wire.State): State {
+  const compared = state.comparedForce();
   return {
     epoch: state.epoch(),
     topology: state.topology(),
@@ -161,6 +169,8 @@ function readState(state: wire.State): State {
     rates: readRates(state.rates()),
     traceTick: Number(state.traceTick()),
     trace: state.traceArray() ?? kNoFloats,
+    record: readRecordUse(state.record()),
+    comparedForce: compared === null ? null : vec3(compared),
   };
 }
 

@@ -49,6 +49,8 @@ function payloadOf(command: Command): Payload {
       return [wire.Payload.ShowField, new wire.ShowFieldT(command.field)];
     case "record":
       return [wire.Payload.Record, new wire.RecordT(command.on)];
+    case "compare":
+      return [wire.Payload.Compare, new wire.CompareT(command.on)];
     case "seek":
       return [wire.Payload.Seek, new wire.SeekT(command.time)];
     case "play":

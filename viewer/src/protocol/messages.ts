@@ -39,6 +39,14 @@ export interface Role {
   readonly clients: number;
 }
 
+/** Which part of a record answers, and what it does not know. */
+export interface RecordUse {
+  readonly topology: number;
+  readonly outside: boolean;
+  readonly pastLast: boolean;
+  readonly tornOff: boolean;
+}
+
 export interface Body {
   readonly scene: string;
   readonly title: string;
@@ -58,6 +66,8 @@ export interface Body {
   readonly maxForce: number;
   readonly values: string;
   readonly script: number;
+  readonly response: string;
+  readonly hasRecord: boolean;
 }
 
 export interface Edit {
@@ -111,6 +121,9 @@ export interface State {
   readonly rates: Rates | null;
   readonly traceTick: number;
   readonly trace: Float32Array;
+  readonly record: RecordUse | null;
+  /** null: none is compared. */
+  readonly comparedForce: Vec3 | null;
 }
 
 export interface Notice {
@@ -147,7 +160,7 @@ export type Command =
   | { readonly kind: "takeHand" | "giveHand" | "letGo" | "reset" | "undo" }
   | { readonly kind: "grasp"; readonly face: number; readonly weights: Vec3; readonly push: boolean }
   | { readonly kind: "move"; readonly to: Vec3 }
-  | { readonly kind: "pause" | "script" | "record"; readonly on: boolean }
+  | { readonly kind: "pause" | "script" | "record" | "compare"; readonly on: boolean }
   | { readonly kind: "step"; readonly ticks: number }
   | { readonly kind: "setValue"; readonly key: string; readonly value: string }
   | { readonly kind: "openScene"; readonly file: string }

@@ -22,6 +22,9 @@ export class Store {
   timeline: Timeline | null = null;
   readonly surface = new Surface();
   readonly trace = new ForceTrace();
+  /** Of the body itself, before the device's limit, and of the other response; while the two are compared. */
+  readonly own = new ForceTrace();
+  readonly compared = new ForceTrace();
   advances: Advance[] = [];
   recordings: Recorded[] = [];
   /** Frames taken, refused ones too. */
@@ -87,7 +90,18 @@ export class Store {
   private takeState(state: State): Change {
     if (!this.surface.applyState(state)) return "none";
     this.trace.add(state.traceTick, state.trace);
+    this.compare(state);
     this.state = state;
     return "state";
+  }
+
+  private compare(state: State): void {
+    if (state.comparedForce !== null) {
+      this.own.holdTo(state.tick, state.bodyForce);
+      this.compared.holdTo(state.tick, state.comparedForce);
+    } else if (this.state?.comparedForce) {
+      this.own.clear();
+      this.compared.clear();
+    }
   }
 }

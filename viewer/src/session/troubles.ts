@@ -1,7 +1,7 @@
 import { counted, fixed, forceText } from "../base/format";
 import { length } from "../base/vec3";
 import { Level } from "../wire/rhexis_generated";
-import type { Body, Hello, Role, State } from "../protocol/messages";
+import type { Body, Hello, RecordUse, Role, State } from "../protocol/messages";
 
 /** ms: a force law older than this is felt as a lag. */
 export const kLateLaw = 100;
@@ -32,6 +32,7 @@ export function troubles(situation: Situation): Trouble[] {
   if (state !== null) {
     judgePhysics(state, say);
     if (state.limited && state.held) judgeLimit(state, body, say);
+    if (state.record !== null) judgeRecord(state.record, say);
     if (state.pieces > 1)
       say("pieces", Level.warning, `The body is in ${counted(state.pieces, "piece")}. What no support holds stays where it came off.`);
   }
@@ -53,6 +54,13 @@ function judgePhysics(state: State, say: Say): void {
 function judgeLimit(state: State, body: Body | null, say: Say): void {
   const limit = body !== null && body.maxForce > 0 ? `${fixed(body.maxForce, 1)} N` : "its limit";
   say("limited", Level.warning, `The force is cut to ${limit}:`, `the body itself pulls with ${forceText(length(state.bodyForce))} N.`);
+}
+
+function judgeRecord(record: RecordUse, say: Say): void {
+  const which = `topology ${record.topology} of it answers.`;
+  if (record.outside) say("record", Level.warning, "The crack is outside the record:", `the nearest, ${which}`);
+  else if (record.pastLast) say("record", Level.warning, "The crack has run on more often than the record knows:", which);
+  if (record.tornOff) say("record-point", Level.warning, "What is held has come off in the record. Its force is that of topologies that have it.");
 }
 
 function handText(role: Role): string {

@@ -160,7 +160,7 @@ export class BodyView {
 }
 
 /** Pairs of vertices, each edge of the surface once. */
-function edgesOf(surface: Surface): Uint32Array {
+export function edgesOf(surface: Surface): Uint32Array {
   const pairs: number[] = [];
   const seen = new Set<number>();
   for (let slot = 0; slot < surface.slotCount; ++slot) {

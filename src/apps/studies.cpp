@@ -1,0 +1,179 @@
+// What `rhexis study` can run.
+
+#include "apps/studies.h"
+
+#include <fmt/format.h>
+
+#include "studies/beta_sweep.h"
+#include "studies/identification.h"
+#include "studies/iteration_timing.h"
+#include "studies/live_study.h"
+#include "studies/model_comparison.h"
+#include "studies/reaction_error.h"
+#include "studies/restructuring.h"
+#include "studies/stability_map.h"
+
+namespace rhexis::apps {
+namespace {
+
+template <class Options, class Run>
+StudyFunction runs_with(std::shared_ptr<Options> options, Run run) {
+  return [options, run](const studies::StudyFolder& folder, const studies::Progress& progress) {
+    return run(*options, folder, progress);
+  };
+}
+
+StudyFunction identification_options(CLI::App& command) {
+  auto options = std::make_shared<studies::IdentificationOptions>();
+  command.add_option("--nodes", options->nodes, "of the vessel; 401 unless given")->type_name("COUNT");
+  command
+      .add_option("--shared", options->shared,
+                  "folder with reference/, solutions of other programs; ../shared unless given")
+      ->type_name("DIR");
+  return runs_with(options, studies::run_identification);
+}
+
+StudyFunction beta_sweep_options(CLI::App& command) {
+  auto options = std::make_shared<studies::BetaSweepOptions>();
+  command.add_option("--nodes", options->nodes, "of the vessel; 401 unless given")->type_name("COUNT");
+  command.add_option("--density", options->density, "kg/m3; 500 unless given")->type_name("KG/M3");
+  return runs_with(options, studies::run_beta_sweep);
+}
+
+StudyFunction model_comparison_options(CLI::App& command) {
+  auto options = std::make_shared<studies::ModelComparisonOptions>();
+  command.add_option("--nodes", options->nodes, "of the vessel; 401 unless given")->type_name("COUNT");
+  command.add_option("--density", options->densities, "kg/m3; 500 and 5000 unless given")
+      ->type_name("KG/M3")
+      ->expected(-1);
+  command.add_option("--shared", options->shared, "folder with data/, meshes of organs; ../shared unless given")
+      ->type_name("DIR");
+  command.add_option("--organ", options->organs, "of it, where they are; kidney_1k and liver_1k unless given")
+      ->type_name("NAME")
+      ->expected(-1);
+  return runs_with(options, studies::run_model_comparison);
+}
+
+StudyFunction timing_options(CLI::App& command) {
+  auto options = std::make_shared<studies::TimingOptions>();
+  command.add_option("--nodes", options->nodes, "of the vessels; 401 to 30000 unless given")
+      ->type_name("COUNT")
+      ->expected(-1);
+  command.add_option("--threads", options->threads, "1 and 2 unless given")->type_name("COUNT")->expected(-1);
+  command.add_option("--linear", options->solvers, "direct, cg, minres")->type_name("NAME")->expected(-1);
+  command.add_option("--hand", options->hand, "m/s, the speed of the load where each step is one iteration")
+      ->type_name("M/S");
+  return runs_with(options, studies::run_timing);
+}
+
+StudyFunction restructuring_options(CLI::App& command) {
+  auto options = std::make_shared<studies::RestructuringOptions>();
+  command.add_option("--nodes", options->nodes, "of the plates")->type_name("COUNT")->expected(-1);
+  command.add_option("--mode", options->modes, fmt::format("{}", fmt::join(studies::kTearModes, ", ")))
+      ->type_name("MODE")
+      ->expected(-1);
+  command.add_option("--way", options->ways, fmt::format("{}", fmt::join(studies::kWays, ", ")))
+      ->type_name("WAY")
+      ->expected(-1);
+  command.add_option("--seconds", options->seconds_per_case, "a plate is torn anew from its start for about so long")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.0, 3600.0));
+  return runs_with(options, studies::run_restructuring);
+}
+
+StudyFunction reaction_error_options(CLI::App& command) {
+  auto options = std::make_shared<studies::ReactionErrorOptions>();
+  command.add_option("--nodes", options->nodes, "of the plate")->type_name("COUNT");
+  command.add_option("--advances", options->advances, "1: Table 5.9 of the thesis, 2: Table 5.10")
+      ->type_name("COUNT")
+      ->expected(-1);
+  command.add_option("--spacing", options->spacing, "between recorded cracks")->type_name("DEGREES");
+  command.add_option("--spacings", options->spacings, "that are compared, at one advance")
+      ->type_name("DEGREES")
+      ->expected(-1);
+  command.add_option("--step", options->step, "between the cracks that are asked for")->type_name("DEGREES");
+  return runs_with(options, studies::run_reaction_error);
+}
+
+StudyFunction haptic_stability_options(CLI::App& command) {
+  auto options = std::make_shared<studies::StabilityOptions>();
+  command.add_option("--stiffness", options->stiffness, "N/m, of the coupling")->type_name("N/M")->expected(-1);
+  command.add_option("--damping", options->damping, "N s/m, of the coupling")->type_name("NS/M");
+  command.add_option("--delay", options->delay, "ms, whole ones, of the force")->type_name("MS")->expected(-1);
+  command.add_option("--resolution", options->device.resolution, "m, of the position; 0: exact")->type_name("M");
+  command.add_option("--mass", options->device.mass, "kg, of device and finger")->type_name("KG");
+  command.add_option("--hand-damping", options->device.hand_damping, "N s/m, of the hand")->type_name("NS/M");
+  command.add_option("--seconds", options->seconds, "of each run")->type_name("SECONDS")->check(CLI::Range(1.2, 600.0));
+  return runs_with(options, studies::run_stability_map);
+}
+
+StudyFunction live_options(CLI::App& command) {
+  auto options = std::make_shared<studies::LiveOptions>();
+  command.add_option("--seconds", options->seconds, "to run; 600 unless given")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(1.0, 86400.0));
+  command.add_option("--nodes", options->nodes, "of the plate; 20000 unless given")
+      ->type_name("COUNT")
+      ->check(CLI::Range(100, 1'000'000));
+  command.add_option("--clients", options->clients, "that watch; 3 unless given")
+      ->type_name("COUNT")
+      ->check(CLI::Range(1, 16));
+  command.add_option("--device", options->device, "script or emulator; emulator unless given")->type_name("NAME");
+  command.add_option("--priority", options->priority, "of the haptic loop under SCHED_FIFO; 80 unless given, 0: none")
+      ->type_name("PRIORITY")
+      ->check(CLI::Range(0, 99));
+  return runs_with(options, studies::run_live_study);
+}
+
+}  // namespace
+
+std::span<const Study> all_studies() {
+  static const std::vector<Study> kStudies{
+      {"identification",
+       "Is the hyperelastic model what another program computes, and how near to the truth",
+       "--out out/identification",
+       {"body", "rho", "against", "mean_percent", "component_percent", "component_median_percent", "box_percent_max",
+        "largest_mm"},
+       identification_options},
+      {"stabilisation",
+       "Which factor of the pressure stabilisation to take, and why auto",
+       "--nodes 800",
+       {"choice", "beta", "pressure_jump", "volume_ratio", "error_u_percent", "error_lambda_percent", "iterations"},
+       beta_sweep_options},
+      {"models",
+       "Where the six models part from each other and from the trusted answer",
+       "--density 500",
+       {"body", "rho", "model", "mean", "max", "mean_x", "mean_y", "mean_z", "load", "volume_ratio", "inverted_tets"},
+       model_comparison_options},
+      {"timing",
+       "What a Newton iteration of each model costs, and what one iteration a step is good for",
+       "--nodes 401 3000 --threads 2",
+       {"nodes", "threads", "model", "linear", "outcome", "tangent_ms", "solve_ms", "tangent_ratio", "solve_ratio",
+        "iteration_ratio"},
+       timing_options},
+      {"restructuring",
+       "What an advance of a crack costs, by five ways",
+       "--nodes 506 1270 5000 --mode slow-pull",
+       {"nodes", "mode", "way", "advances", "ms_per_advance", "ms_median", "ms_most", "ms_per_tet", "sparse_over_this"},
+       restructuring_options},
+      {"reaction-error",
+       "How far recorded forces are from the exact ones",
+       "--advances 1 --step 5",
+       {"advances", "way", "patterns", "better", "better_untied", "mean", "deviation", "mean_relative", "thesis_better",
+        "thesis_mean", "thesis_deviation"},
+       reaction_error_options},
+      {"haptic-stability",
+       "Which couplings an emulated haptic device bears",
+       "--delay 0 1 2 --stiffness 500 1000 2000",
+       {"stiffness", "delay_ms", "over_bound", "rests_free", "shake_mm_free", "rests_kept", "shake_mm_kept", "gain"},
+       haptic_stability_options},
+      {"live",
+       "How punctual a live session is: haptic loop, laws, pictures of its clients",
+       "--seconds 60 --nodes 5000",
+       {"measure", "value", "unit", "note"},
+       live_options},
+  };
+  return kStudies;
+}
+
+}  // namespace rhexis::apps

@@ -1,0 +1,116 @@
+#include "linalg/pressure_patches.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "linalg/patches.h"
+#include "linalg/saddle_residual.h"
+
+namespace rhexis::linalg {
+namespace {
+
+/// Pressures in a patch and most patches: docs/solvers.md has the iteration counts that they were chosen by.
+constexpr std::int32_t kPatchSize = 100;
+constexpr std::int32_t kMostPatches = 16;
+/// Least tr(B D^-1 B^T) / tr(A): about a bulk stiffness of 1.2 mu for pressures that C damps.
+constexpr double kBulkShare = 0.36;
+
+double trace(const SymmetricBlockMatrix& A) {
+  double sum = 0.0;
+  for (std::int32_t row = 0; row < A.rows(); ++row) {
+    const auto block = static_cast<std::size_t>(A.pattern->row_start[static_cast<std::size_t>(row) + 1]) - 1;
+    for (std::size_t c : {0U, 4U, 8U}) sum += A.values[9 * block + c];
+  }
+  return sum;
+}
+
+/// tr(B diag(d)^-1 B^T).
+double trace_of_product(const CouplingMatrix& B, const VectorX& d) {
+  double sum = 0.0;
+  for (std::int32_t p = 0; p < B.rows(); ++p) {
+    const auto first = static_cast<std::size_t>(B.pattern->row_start[static_cast<std::size_t>(p)]);
+    const auto last = static_cast<std::size_t>(B.pattern->row_start[static_cast<std::size_t>(p) + 1]);
+    for (std::size_t i = 3 * first; i < 3 * last; ++i) sum += B.values[i] * B.values[i] / d[p];
+  }
+  return sum;
+}
+
+}  // namespace
+
+void PressurePatches::set(const SaddleMatrix& K, const Solve& c_inverse) {
+  const SymmetricCsr& C = K.C;
+  const std::int32_t m = C.rows();
+  d_.resize(m);
+  for (std::int32_t p = 0; p < m; ++p) {
+    d_[p] = C.values[static_cast<std::size_t>(C.pattern->row_start[static_cast<std::size_t>(p) + 1]) - 1];
+  }
+  smooth_.resize(m, 0);
+  G_.resize(0, 0);
+  const bool diagonal = static_cast<std::int32_t>(C.pattern->column.size()) == m;
+  if (diagonal) return;  // E = 0: P is S
+  const double bulk = trace_of_product(K.B, d_);
+  const std::vector<std::int32_t> patch =
+      cut_into_patches(*C.pattern, std::max(kPatchSize, (m - 1) / kMostPatches + 1));
+  const std::int32_t count = *std::max_element(patch.begin(), patch.end()) + 1;
+  smooth_.setZero(m, count);
+  for (std::int32_t p = 0; p < m; ++p) smooth_(p, patch[static_cast<std::size_t>(p)]) = 1.0;
+  const Eigen::MatrixXd indicators = smooth_;
+  c_inverse(indicators, smooth_);
+  Eigen::MatrixXd of_c = Eigen::MatrixXd::Zero(count, count);  // W^T C^-1 W
+  VectorX of_d = VectorX::Zero(count);                         // W^T diag(C)^-1 W
+  for (std::int32_t p = 0; p < m; ++p) {
+    of_c.row(patch[static_cast<std::size_t>(p)]) += smooth_.row(p);
+    of_d[patch[static_cast<std::size_t>(p)]] += 1.0 / d_[p];
+  }
+  // The patches have to be smoother than the weight makes up for: G definite. Less weight makes it so, unless C = D up
+  // to rounding or the patches oscillate; there is nothing to put back then.
+  double weight = std::max(1.0, bulk > 0.0 ? kBulkShare * trace(K.A) / bulk : 1.0);
+  for (;; weight = std::max(1.0, 0.5 * weight)) {
+    G_ = of_c;
+    G_.diagonal() -= weight * of_d;
+    if (Eigen::LLT<Eigen::MatrixXd>(G_).info() == Eigen::Success) break;
+    if (weight == 1.0) {
+      smooth_.resize(m, 0);
+      G_.resize(0, 0);
+      return;
+    }
+  }
+  d_ /= weight;
+  for (std::int32_t p = 0; p < m; ++p) smooth_(p, patch[static_cast<std::size_t>(p)]) -= 1.0 / d_[p];
+}
+
+void PressurePatches::correct(const SaddleMatrix& K, const FreeDofs& free, const Solve& p_inverse) {
+  const Eigen::Index columns = count();
+  V_.setZero(K.displacement_unknowns(), columns);
+  if (columns == 0) return;
+  VectorX pressure(smooth_.rows());
+  VectorX force(V_.rows());
+  for (Eigen::Index col = 0; col < columns; ++col) {
+    pressure = smooth_.col(col);
+    force.setZero();
+    K.B.add_transposed(pressure, 1.0, force);
+    clear_held(free, force);
+    V_.col(col) = force;
+  }
+  Eigen::MatrixXd solved(V_.rows(), columns);
+  p_inverse(V_, solved);
+  Eigen::MatrixXd inner = G_;
+  inner.noalias() += V_.transpose() * solved;
+  coarse_.compute(inner);
+  V_ = std::move(solved);
+}
+
+void PressurePatches::apply(const VectorX& r, VectorX& z) const {
+  if (count() == 0) return;
+  VectorX small = V_.transpose() * r;
+  coarse_.solveInPlace(small);
+  z.noalias() -= V_ * small;
+}
+
+std::size_t PressurePatches::memory_bytes() const {
+  return sizeof(double) * static_cast<std::size_t>(d_.size() + smooth_.size() + V_.size() + 2 * G_.size());
+}
+
+}  // namespace rhexis::linalg

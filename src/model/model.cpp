@@ -1,0 +1,11 @@
+#include "model/model.h"
+
+#include "base/check.h"
+
+namespace rhexis::model {
+
+Evaluation Model::tet_tangents(const State&, Scratch&, std::vector<double>&, std::vector<double>&) const {
+  RHEXIS_CHECK(false, "{} is no sum over tets of one tangent each", name());
+}
+
+}  // namespace rhexis::model

@@ -1,0 +1,273 @@
+#include "solver/live_equilibrium.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "base/check.h"
+
+namespace rhexis::solver {
+namespace {
+
+/// A move of the hand is halved this often at most where a tet would invert.
+constexpr int kHalvings = 4;
+/// A correction that leaves more than this times the residual is not taken. Moves out of bending stretch first.
+constexpr double kGrowth = 4.0;
+/// Relative residual of Z when the hand takes hold.
+constexpr double kFirstAnswer = 1e-3;
+constexpr int kMostFirstIterations = 200;
+/// Of the body's size: what takes less force to move the hand by is near to rest, and a residual is held against that.
+constexpr double kSmallMove = 0.01;
+/// Frames that may be late in a row.
+constexpr int kMostLateFrames = 20;
+/// Corrections of a frame that is late.
+constexpr int kLateCorrections = 2;
+/// Iterations from which on a preconditioner is made anew at the present state.
+constexpr int kWornIterations = 4;
+
+linalg::FreeDofs free_dofs_of(const model::Model& model, const model::Loading& loading) {
+  std::vector<bool> held(model.space().dof_count(), false);
+  for (const model::PrescribedDof& support : loading.supports) held[static_cast<std::size_t>(support.dof)] = true;
+  return linalg::make_free_dofs(held);
+}
+
+}  // namespace
+
+LiveEquilibrium::LiveEquilibrium(const model::Model& model, const model::Loading& loading, model::State state,
+                                 LiveOptions options)
+    : model_(model),
+      loading_(loading),
+      options_(options),
+      free_(free_dofs_of(model, loading)),
+      scratch_(model.make_scratch()),
+      state_(std::move(state)),
+      tangent_(model.make_tangent()),
+      linear_(model, free_, state_) {
+  const auto dofs = static_cast<Eigen::Index>(model.space().dof_count());
+  const auto pressures = static_cast<Eigen::Index>(model.pressure_unknowns());
+  for (VectorX* vector : {&residual_.u, &external_, &internal_, &du_, &rhs_u_}) vector->setZero(dofs);
+  for (VectorX* vector : {&residual_.lambda, &dlambda_, &rhs_lambda_}) vector->setZero(pressures);
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : model.space().nodes) box.extend(x);
+  size_of_body_ = box.diagonal().norm();
+  for (const model::PrescribedDof& support : loading.supports) state_.u[support.dof] = support.value;
+  trial_ = state_;
+  now_ = evaluate(state_);
+  good_ = state_;
+}
+
+Vec3 LiveEquilibrium::at_point(const VectorX& u) const {
+  Vec3 out = Vec3::Zero();
+  for (int k = 0; k < held_->count; ++k)
+    out += held_->weight[k] * u.segment<3>(3 * Eigen::Index{held_->node[static_cast<std::size_t>(k)]});
+  return out;
+}
+
+void LiveEquilibrium::add_at_point(const Vec3& force, VectorX& out) const {
+  for (int k = 0; k < held_->count; ++k)
+    out.segment<3>(3 * Eigen::Index{held_->node[static_cast<std::size_t>(k)]}) += held_->weight[k] * force;
+}
+
+Vec3 LiveEquilibrium::point() const { return held_ ? at_point(state_.u) : Vec3::Zero(); }
+
+LiveEquilibrium::Trial LiveEquilibrium::evaluate(const model::State& state) {
+  Trial out;
+  out.evaluation = model_.residual(state, *scratch_, residual_);
+  internal_ = residual_.u;
+  external_ = loading_.dead_force;
+  for (const model::FollowerPressure& load : loading_.pressures)
+    model::add_pressure_force(load, model_.space(), state.u, 1.0, external_);
+  residual_.u -= external_;
+  if (held_) {
+    multiplier_ = at_point(residual_.u) / held_->weight.squaredNorm();
+    add_at_point(-multiplier_, residual_.u);
+    add_at_point(multiplier_, external_);
+  }
+  double square = 0.0;
+  for (const std::int32_t dof : free_.dof) square += residual_.u[dof] * residual_.u[dof];
+  out.norm = std::sqrt(square);
+  const double scale = std::max({internal_.norm(), external_.norm(), small_force_});
+  out.relative = scale > 0.0 ? out.norm / scale : 0.0;
+  return out;
+}
+
+bool LiveEquilibrium::is_admissible(const Trial& trial) const {
+  return trial.evaluation.finite && std::isfinite(trial.norm) &&
+         (model_.allows_inversion() || trial.evaluation.inverted_tets == 0);
+}
+
+void LiveEquilibrium::build_tangent() {
+  model_.tangent(state_, *scratch_, tangent_);
+  tangent_.skew.reset();
+  for (const model::FollowerPressure& load : loading_.pressures)
+    model::subtract_pressure_stiffness(load, model_.space(), state_.u, 1.0, tangent_);
+  linear_.set_tangent(tangent_);
+}
+
+/// K dz = N_j - K z.
+void LiveEquilibrium::refresh_answer(int column, double tolerance, int most, int* iterations) {
+  VectorX& u = answer_u_[static_cast<std::size_t>(column)];
+  VectorX& lambda = answer_lambda_[static_cast<std::size_t>(column)];
+  size_.set_system(tangent_, free_);
+  // The polynomial for C^-1 leaves something of the pressure's row: once more from what is left.
+  for (int round = 0; round < 4; ++round) {
+    rhs_u_.setZero();
+    rhs_lambda_.setZero();
+    add_at_point(Vec3::Unit(column), rhs_u_);
+    const double left = size_.measure(rhs_u_, rhs_lambda_, u, lambda) / held_->weight.norm();
+    if (left <= tolerance || *iterations >= most) return;
+    *iterations += linear_
+                       .solve(LiveLinear::Point::free, size_.u(), size_.p(), std::min(0.5, 0.5 * tolerance / left),
+                              most - *iterations, du_, dlambda_)
+                       .iterations;
+    u += du_;
+    lambda += dlambda_;
+  }
+}
+
+void LiveEquilibrium::update_compliance() {
+  Mat3 C;
+  for (int j = 0; j < 3; ++j) C.col(j) = at_point(answer_u_[static_cast<std::size_t>(j)]);
+  compliance_ = 0.5 * (C + C.transpose());
+  stiffness_ = compliance_.inverse();
+  from_gap_ = C.inverse();
+  small_force_ = kSmallMove * size_of_body_ * stiffness_.norm();
+}
+
+void LiveEquilibrium::hold(const HeldPoint& point) {
+  for (int k = 0; k < point.count; ++k) {
+    for (const model::PrescribedDof& support : loading_.supports)
+      RHEXIS_CHECK(support.dof / 3 != point.node[static_cast<std::size_t>(k)], "node {} is held by a support",
+                   support.dof / 3);
+  }
+  held_ = point;
+  std::vector<VectorX> rows(3, VectorX::Zero(state_.u.size()));
+  for (int j = 0; j < 3; ++j) add_at_point(Vec3::Unit(j), rows[static_cast<std::size_t>(j)]);
+  linear_.set_constraint(std::move(rows));
+  force_.setZero();
+  build_tangent();
+  for (int j = 0; j < 3; ++j) {
+    answer_u_[static_cast<std::size_t>(j)].setZero(state_.u.size());
+    answer_lambda_[static_cast<std::size_t>(j)].setZero(state_.lambda.size());
+    int iterations = 0;
+    refresh_answer(j, kFirstAnswer, kMostFirstIterations, &iterations);
+  }
+  update_compliance();
+  now_ = evaluate(state_);
+}
+
+void LiveEquilibrium::let_go() {
+  held_.reset();
+  linear_.set_constraint({});
+  force_.setZero();
+  now_ = evaluate(state_);
+}
+
+LiveFrame LiveEquilibrium::step(const Vec3& hand) {
+  RHEXIS_CHECK(holds(), "no point is held");
+  return advance(&hand);
+}
+LiveFrame LiveEquilibrium::settle() {
+  RHEXIS_CHECK(!holds(), "a point is held");
+  return advance(nullptr);
+}
+
+/// f + C^-1 Z^T r, r the residual of the state with its multiplier.
+void LiveEquilibrium::correct_force() {
+  Vec3 work;
+  for (int j = 0; j < 3; ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    work[j] = answer_u_[k].dot(residual_.u) + answer_lambda_[k].dot(residual_.lambda);
+  }
+  force_ = multiplier_ + stiffness_ * work;
+}
+
+LiveFrame LiveEquilibrium::advance(const Vec3* hand) {
+  LiveFrame frame;
+  bool worn = false;
+  frame.refreshed = linear_.take_refreshed();
+  frame.reached = hand == nullptr || now_.relative <= options_.late;
+  if (hand != nullptr && frame.reached) {
+    // The first guess: the last tangent's answer to the move of the hand, shortened where a tet would invert.
+    const Vec3 gap = *hand - at_point(state_.u);
+    double part = 1.0;
+    Trial next;
+    for (int halving = 0;; ++halving, part *= 0.5) {
+      if (halving > kHalvings) {
+        frame.reached = false;
+        frame.trouble = fmt::format("the body cannot follow: tet {} would turn inside out",
+                                    next.evaluation.worst_tet.valid() ? next.evaluation.worst_tet.value() : -1);
+        now_ = evaluate(state_);
+        return frame;
+      }
+      const Vec3 df = part * (from_gap_ * gap);
+      trial_ = state_;
+      for (int j = 0; j < 3; ++j) {
+        trial_.u += df[j] * answer_u_[static_cast<std::size_t>(j)];
+        trial_.lambda += df[j] * answer_lambda_[static_cast<std::size_t>(j)];
+      }
+      next = evaluate(trial_);
+      if (is_admissible(next)) break;
+    }
+    frame.reached = part == 1.0;
+    std::swap(state_, trial_);
+    now_ = next;
+  }
+  const int most = now_.relative > options_.late ? kLateCorrections : options_.corrections;
+  for (; frame.corrections < most && now_.relative > options_.tolerance; ++frame.corrections) {
+    build_tangent();
+    rhs_u_ = -residual_.u;
+    rhs_lambda_ = -residual_.lambda;
+    const LiveSolve solve = linear_.solve(LiveLinear::Point::fixed, rhs_u_, rhs_lambda_, options_.forcing,
+                                          options_.iterations, du_, dlambda_);
+    frame.linear_iterations += solve.iterations;
+    worn = worn || solve.iterations >= kWornIterations || solve.truncated;
+    double part = 1.0;
+    Trial next;
+    bool taken = false;
+    for (int halving = 0; halving <= kHalvings && !taken; ++halving) {
+      part = std::ldexp(1.0, -halving);
+      trial_.u = state_.u + part * du_;
+      trial_.lambda = state_.lambda + part * dlambda_;
+      next = evaluate(trial_);
+      taken = is_admissible(next) && next.norm <= kGrowth * now_.norm;
+    }
+    if (!taken) {
+      frame.trouble = "a correction would make it worse";
+      now_ = evaluate(state_);
+      break;
+    }
+    std::swap(state_, trial_);
+    now_ = next;
+  }
+  if (held_) {
+    if (frame.corrections > 0) {
+      next_column_ = (next_column_ + 1) % 3;
+      int iterations = 0;
+      refresh_answer(next_column_, options_.worn_answer, options_.iterations, &iterations);
+      frame.linear_iterations += iterations;
+      update_compliance();
+    }
+    correct_force();
+  }
+  if (now_.relative <= options_.late) {
+    good_ = state_;
+    late_frames_ = 0;
+  } else if (++late_frames_ >= kMostLateFrames) {
+    // It does not find back: start again from the last state that was near to equilibrium.
+    state_ = good_;
+    now_ = evaluate(state_);
+    late_frames_ = 0;
+    frame.trouble = "no equilibrium near: back to the last one";
+    worn = true;
+  }
+  if (worn) linear_.refresh(state_);
+  frame.residual = now_.relative;
+  return frame;
+}
+
+}  // namespace rhexis::solver

@@ -1,0 +1,125 @@
+#pragma once
+
+/// Equilibrium that keeps up with a hand (section 6.3 of the paper): a state that is warm from the frame before, a few
+/// Newton corrections a frame, a factor that is kept while it pays.
+///
+/// The hand moves one point, sum of w_i u_i = N u = d, by the force f that this takes:
+///
+///     R(u, lambda) - t F - N^T f = 0,   N u = d.
+///
+/// Z = K^-1 N^T, the answer of the last tangent to the hand, is kept. It gives the compliance C = N Z that serves the
+/// haptic loop between frames, a first guess of the next state for nothing (u + Z C^-1 (d - N u)), and the force of a
+/// state that has not converged, right to second order in what is left of the residual: f + C^-1 Z^T r.
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "model/loading.h"
+#include "model/model.h"
+#include "solver/live_linear.h"
+
+namespace rhexis::solver {
+
+/// A surface point: the first `count` nodes, weights of sum 1.
+struct HeldPoint {
+  std::array<std::int32_t, 3> node{};
+  Vec3 weight = Vec3::Zero();
+  int count = 0;
+};
+
+struct LiveOptions {
+  int corrections = 1;        ///< Newton corrections a frame at most
+  double tolerance = 1e-4;    ///< relative residual below which a frame needs no (further) correction
+  double forcing = 0.3;       ///< relative residual of the linear solve of a correction
+  int iterations = 6;         ///< of conjugate gradients in it, at most
+  double late = 0.1;          ///< relative residual above which the hand is not followed further: late, not wrong
+  double worn_answer = 0.05;  ///< relative residual above which a column of Z is solved for again, one a frame
+};
+
+struct LiveFrame {
+  bool reached = true;  ///< false: the point is not yet where the hand is
+  int corrections = 0;
+  int linear_iterations = 0;
+  double residual = 0.0;   ///< relative to internal and external force, after the frame
+  bool refreshed = false;  ///< a preconditioner that was made in the background was taken up
+  std::string trouble;     ///< one line, empty when there was none
+};
+
+class LiveEquilibrium {
+ public:
+  /// Model and loading (at t = 1) outlive this. Starts from `state`.
+  LiveEquilibrium(const model::Model& model, const model::Loading& loading, model::State state, LiveOptions options);
+
+  /// The hand takes hold; its displacement counts from the reference position of the point. No node of it may be held
+  /// by a support: RHEXIS_CHECK.
+  void hold(const HeldPoint& point);
+  void let_go();
+  [[nodiscard]] bool holds() const { return held_.has_value(); }
+
+  /// One frame: the point to `hand` (m), then corrections. Never hands out a state with more inverted tets or a force
+  /// that is not finite: it stays where it was instead, and says so.
+  LiveFrame step(const Vec3& hand);
+  /// One frame without a hand.
+  LiveFrame settle();
+
+  [[nodiscard]] const model::State& state() const { return state_; }
+  /// Displacement of the held point, m.
+  [[nodiscard]] Vec3 point() const;
+  /// Of the hand on the body, N, right to second order.
+  [[nodiscard]] const Vec3& force() const { return force_; }
+  /// Of the point at the last tangent, m/N, symmetric.
+  [[nodiscard]] const Mat3& compliance() const { return compliance_; }
+  /// Its inverse, N/m: between frames the hand at d feels force() + stiffness() (d - point()).
+  [[nodiscard]] const Mat3& stiffness() const { return stiffness_; }
+
+ private:
+  struct Trial {
+    model::Evaluation evaluation;
+    double norm = 0.0;  ///< N, of the residual on the free dofs
+    double relative = 0.0;
+  };
+  LiveFrame advance(const Vec3* hand);
+  /// Leaves the residual in residual_ and the hand's force that makes it least in multiplier_.
+  Trial evaluate(const model::State& state);
+  [[nodiscard]] bool is_admissible(const Trial& trial) const;
+  void build_tangent();
+  void refresh_answer(int column, double tolerance, int most, int* iterations);
+  [[nodiscard]] Vec3 at_point(const VectorX& u) const;
+  void add_at_point(const Vec3& force, VectorX& out) const;
+  void update_compliance();
+  void correct_force();
+
+  const model::Model& model_;
+  const model::Loading& loading_;
+  LiveOptions options_;
+  linalg::FreeDofs free_;
+  std::unique_ptr<model::Scratch> scratch_;
+  model::State state_;
+  linalg::SaddleMatrix tangent_;
+  linalg::SaddleResidual size_;
+  LiveLinear linear_;
+
+  Vec3 multiplier_ = Vec3::Zero();  ///< N, that goes with the state
+  Vec3 force_ = Vec3::Zero();
+  Trial now_;
+  model::Residual residual_;     ///< without the hand's force
+  VectorX external_, internal_;  ///< N
+
+  std::optional<HeldPoint> held_;
+  std::array<VectorX, 3> answer_u_, answer_lambda_;  ///< columns of Z
+  Mat3 compliance_ = Mat3::Zero();
+  Mat3 stiffness_ = Mat3::Zero();
+  Mat3 from_gap_ = Mat3::Zero();  ///< (N Z)^-1
+  int next_column_ = 0;
+
+  model::State trial_;
+  model::State good_;  ///< the last one near to equilibrium
+  int late_frames_ = 0;
+  double size_of_body_ = 0.0;  ///< m
+  double small_force_ = 0.0;   ///< N
+  VectorX du_, dlambda_, rhs_u_, rhs_lambda_;
+};
+
+}  // namespace rhexis::solver

@@ -1,0 +1,245 @@
+#include "solver/live_linear.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "base/check.h"
+
+namespace rhexis::solver {
+namespace {
+
+/// Error of the map that stands in for C^-1 within an iteration: conjugate gradients take as many iterations with 0.3
+/// as with 0.01. What it leaves is left in the residual, which is taken with C itself.
+constexpr double kPressureReduction = 3e-1;
+/// The same where E W is made.
+constexpr double kPatchReduction = 1e-4;
+
+/// The tangents of the tets of one state, with their pressures eliminated by D.
+class TetTangents final : public linalg::ElementSource {
+ public:
+  TetTangents(const model::Model& model, const linalg::FreeDofs& free, const model::State& state) : model_(model) {
+    const auto scratch = model.make_scratch();
+    model.tet_tangents(state, *scratch, blocks_, coupling_);
+    const std::vector<std::int32_t>& connectivity = model.space().connectivity;
+    nodes_.resize(connectivity.size() / 4);
+    for (std::size_t t = 0; t < nodes_.size(); ++t) {
+      std::copy_n(connectivity.begin() + static_cast<std::ptrdiff_t>(4 * t), 4, nodes_[t].begin());
+      std::sort(nodes_[t].begin(), nodes_[t].end());
+    }
+    free_.assign(model.space().node_count(), 0);
+    for (const std::int32_t dof : free.dof) free_[static_cast<std::size_t>(dof / 3)] |= 1U << (dof % 3);
+  }
+  /// Per tet, m^3/Pa.
+  void set_diagonal(const VectorX& d) { d_ = d; }
+  /// Adds this part of its trace to the diagonal of each tet.
+  void shift_by(double part) { shift_ = part; }
+
+  std::int32_t node_count() const override { return static_cast<std::int32_t>(free_.size()); }
+  std::int32_t element_count() const override { return static_cast<std::int32_t>(nodes_.size()); }
+  bool is_active(std::int32_t) const override { return true; }
+  std::array<std::int32_t, 4> nodes(std::int32_t tet) const override { return nodes_[static_cast<std::size_t>(tet)]; }
+  void stiffness(std::int32_t tet, linalg::ElementMatrix& out) const override {
+    const double* block = blocks_.data() + 90 * static_cast<std::size_t>(tet);
+    for (Eigen::Index a = 0; a < 4; ++a) {
+      for (Eigen::Index b = 0; b <= a; ++b, block += 9) {
+        const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> K(block);
+        out.block<3, 3>(3 * a, 3 * b) = K;
+        out.block<3, 3>(3 * b, 3 * a) = K.transpose();
+      }
+    }
+    if (!coupling_.empty()) {
+      const Eigen::Map<const linalg::ElementVector> b(coupling_.data() + 12 * static_cast<std::size_t>(tet));
+      out.noalias() += b * b.transpose() / d_[tet];
+    }
+    if (shift_ > 0.0) out.diagonal().array() += shift_ * out.diagonal().cwiseAbs().mean();
+  }
+  void load(std::int32_t, linalg::ElementVector& out) const override { out.setZero(); }
+  Vec3 node_load(std::int32_t) const override { return Vec3::Zero(); }
+  unsigned free_components(std::int32_t node) const override { return free_[static_cast<std::size_t>(node)]; }
+
+ private:
+  const model::Model& model_;
+  std::vector<double> blocks_, coupling_;
+  std::vector<std::array<std::int32_t, 4>> nodes_;
+  std::vector<unsigned> free_;  ///< per node
+  VectorX d_;
+  double shift_ = 0.0;
+};
+
+}  // namespace
+
+/// Never changes once made.
+struct LiveLinear::Preconditioner {
+  std::shared_ptr<const linalg::FrontTree> tree;
+  linalg::PressurePatches patches;
+
+  void solve(const VectorX& r, VectorX& z) const {
+    tree->solve(r, z);
+    patches.apply(r, z);
+  }
+};
+
+LiveLinear::LiveLinear(const model::Model& model, const linalg::FreeDofs& free, const model::State& state)
+    : model_(model), free_(free), ready_(std::make_shared<std::atomic<bool>>(false)) {
+  const linalg::SaddleMatrix K = model.make_tangent();
+  if (K.C.rows() > 0) c_inverse_ = linalg::ChebyshevInverse(K.C, kPressureReduction);
+  preconditioner_ = prepare(state);
+}
+
+LiveLinear::~LiveLinear() = default;
+
+std::shared_ptr<const LiveLinear::Preconditioner> LiveLinear::prepare(const model::State& state) const {
+  auto out = std::make_shared<Preconditioner>();
+  TetTangents tets(model_, free_, state);
+  linalg::SaddleMatrix K = model_.make_tangent();
+  if (K.C.rows() > 0) {
+    const auto scratch = model_.make_scratch();
+    model_.tangent(state, *scratch, K);
+    const linalg::ChebyshevInverse inverse(K.C, kPatchReduction);
+    out->patches.set(K, [&](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
+      VectorX column;
+      VectorX solved;
+      linalg::ChebyshevInverse::Work work;
+      for (Eigen::Index j = 0; j < b.cols(); ++j) {
+        column = b.col(j);
+        inverse.apply(column, solved, work);
+        x.col(j) = solved;
+      }
+    });
+    tets.set_diagonal(out->patches.diagonal());
+  }
+  // A body under compression may have no definite tangent: what is solved is one that is stiffer.
+  constexpr double kFirstShift = 0.03;
+  constexpr double kLargestShift = 3.0;
+  for (double shift = 0.0;; shift = std::max(kFirstShift, 3.0 * shift)) {
+    tets.shift_by(shift);
+    out->tree = linalg::FrontTree::make(tets, {});
+    if (out->tree->outcome() == linalg::FrontOutcome::ok) break;
+    RHEXIS_CHECK(shift <= kLargestShift, "not positive definite with {} of its diagonal added", shift);
+  }
+  if (K.C.rows() > 0) {
+    out->patches.correct(K, free_, [&](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
+      VectorX column;
+      VectorX solved;
+      for (Eigen::Index j = 0; j < b.cols(); ++j) {
+        column = b.col(j);
+        out->tree->solve(column, solved);
+        x.col(j) = solved;
+      }
+    });
+  }
+  return out;
+}
+
+void LiveLinear::set_tangent(const linalg::SaddleMatrix& K) {
+  K_ = &K;
+  const Eigen::Index dofs = K.displacement_unknowns();
+  work_.resize(dofs);
+  for (VectorX* v : {&p_, &q_}) v->resize(K.C.rows());
+}
+
+void LiveLinear::apply(const VectorX& x, VectorX& y) {
+  K_->A.multiply(x, y);
+  if (q_.size() > 0) {
+    K_->B.multiply(x, q_);
+    c_inverse_.apply(q_, p_, c_work_);
+    K_->B.add_transposed(p_, 1.0, y);
+  }
+  linalg::clear_held(free_, y);
+  project(y);
+}
+
+void LiveLinear::set_constraint(std::vector<VectorX> rows) {
+  RHEXIS_CHECK(rows.empty() || rows.size() == 3, "{} rows", rows.size());
+  rows_ = std::move(rows);
+  prepare_constraint();
+}
+
+void LiveLinear::prepare_constraint() {
+  if (rows_.empty()) return;
+  Mat3 gram;
+  Mat3 answer;
+  for (std::size_t j = 0; j < 3; ++j) {
+    answer_[j].resize(rows_[j].size());
+    preconditioner_->solve(rows_[j], answer_[j]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const auto column = static_cast<Eigen::Index>(j);
+      gram(row, column) = rows_[i].dot(rows_[j]);
+      answer(row, column) = rows_[i].dot(answer_[j]);
+    }
+  }
+  gram_inverse_ = gram.inverse();
+  answer_inverse_ = answer.inverse();
+}
+
+/// r -= N^T (N N^T)^-1 N r.
+void LiveLinear::project(VectorX& r) const {
+  if (!constrained_) return;
+  const Vec3 along = gram_inverse_ * Vec3(rows_[0].dot(r), rows_[1].dot(r), rows_[2].dot(r));
+  for (std::size_t j = 0; j < 3; ++j) r -= along[static_cast<Eigen::Index>(j)] * rows_[j];
+}
+
+void LiveLinear::precondition(const VectorX& r, VectorX& z) const {
+  preconditioner_->solve(r, z);
+  if (!constrained_) return;
+  const Vec3 off = answer_inverse_ * Vec3(rows_[0].dot(z), rows_[1].dot(z), rows_[2].dot(z));
+  for (std::size_t j = 0; j < 3; ++j) z -= off[static_cast<Eigen::Index>(j)] * answer_[j];
+}
+
+LiveSolve LiveLinear::solve(Point point, const VectorX& bu, const VectorX& bp, double tolerance, int most, VectorX& xu,
+                            VectorX& xp) {
+  RHEXIS_CHECK(K_ != nullptr, "no tangent");
+  LiveSolve out;
+  constrained_ = point == Point::fixed && !rows_.empty();
+  r_ = bu;
+  if (bp.size() > 0) {
+    c_inverse_.apply(bp, p_, c_work_);
+    K_->B.add_transposed(p_, 1.0, r_);
+  }
+  linalg::clear_held(free_, r_);
+  project(r_);
+  xu.setZero(bu.size());
+  const double norm = r_.norm();
+  if (norm > 0.0) {
+    const linalg::CgResult result = linalg::conjugate_gradients(
+        [&](const VectorX& x, VectorX& y) { apply(x, y); }, [&](const VectorX& r, VectorX& z) { precondition(r, z); },
+        tolerance * norm, most, work_, r_, xu);
+    out.iterations = result.iterations;
+    out.truncated = result.end == linalg::CgEnd::negative_curvature;
+    out.relative_residual = r_.norm() / norm;
+    if (out.truncated && result.iterations == 1) xu = work_.z;  // nothing yet: the preconditioned residual, downhill
+  }
+  xp.setZero(bp.size());
+  if (bp.size() > 0) {
+    K_->B.multiply(xu, q_);
+    q_ -= bp;
+    c_inverse_.apply(q_, xp, c_work_);
+  }
+  return out;
+}
+
+void LiveLinear::refresh(const model::State& state) {
+  if (task_.under_way()) return;
+  *ready_ = false;
+  task_.start([this, state] {
+    refreshed_ = prepare(state);
+    *ready_ = true;
+  });
+}
+
+bool LiveLinear::refreshing() const { return task_.under_way(); }
+
+bool LiveLinear::take_refreshed() {
+  if (!task_.under_way() || !*ready_) return false;
+  task_.wait();
+  preconditioner_ = std::move(refreshed_);
+  prepare_constraint();
+  return true;
+}
+
+}  // namespace rhexis::solver

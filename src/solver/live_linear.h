@@ -1,0 +1,83 @@
+#pragma once
+
+/// The linear systems of a body that moves a little from frame to frame: conjugate gradients on S = A + B C^-1 B^T, the
+/// pressure eliminated (linalg/condensed_preconditioner.h), cut short. What makes them cheap is the preconditioner
+///
+///     P~ = sum over tets of (A_e + b_e b_e^T / d_e) + V G^-1 V^T,
+///
+/// whose sum is factored by a FrontTree: a version that never changes, which another thread may make anew meanwhile,
+/// and which follows a crack by factoring again what the crack has touched. No BLAS, no workspace that two threads
+/// share.
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "base/background.h"
+#include "linalg/chebyshev_inverse.h"
+#include "linalg/conjugate_gradients.h"
+#include "linalg/front_tree.h"
+#include "linalg/pressure_patches.h"
+#include "linalg/saddle_residual.h"
+#include "model/model.h"
+
+namespace rhexis::solver {
+
+struct LiveSolve {
+  int iterations = 0;
+  double relative_residual = 1.0;  ///< of the last one, by the recurrence
+  bool truncated = false;  ///< a direction of negative curvature was met, and what there was before it is the answer
+};
+
+class LiveLinear {
+ public:
+  /// Both outlive this. Prepares the preconditioner at `state`.
+  LiveLinear(const model::Model& model, const linalg::FreeDofs& free, const model::State& state);
+  ~LiveLinear();
+
+  /// The matrix of the solves that follow; stays with the caller.
+  void set_tangent(const linalg::SaddleMatrix& K);
+  /// N of the solves that are to leave N x = 0, by its three rows; empty: there is none.
+  void set_constraint(std::vector<VectorX> rows);
+  /// K (xu, xp) ~ (bu, bp) over the free dofs to a relative residual of `tolerance`, at most `most` iterations.
+  /// `fixed`: with N xu = 0, by projection of the residuals and a preconditioner that knows the constraint (Gould,
+  /// Hribar, Nocedal 2001); what is left of a residual along N^T is the force that keeps it, and counts as nothing.
+  enum class Point { free, fixed };
+  LiveSolve solve(Point point, const VectorX& bu, const VectorX& bp, double tolerance, int most, VectorX& xu,
+                  VectorX& xp);
+  /// Starts to prepare another preconditioner at `state` beside the caller, unless one is under way.
+  void refresh(const model::State& state);
+  /// Takes it up if it is there. True: it was.
+  bool take_refreshed();
+  [[nodiscard]] bool refreshing() const;
+
+ private:
+  struct Preconditioner;
+  [[nodiscard]] std::shared_ptr<const Preconditioner> prepare(const model::State& state) const;
+  void apply(const VectorX& x, VectorX& y);
+  void precondition(const VectorX& r, VectorX& z) const;
+  void project(VectorX& r) const;
+  void prepare_constraint();
+
+  const model::Model& model_;
+  const linalg::FreeDofs& free_;
+  linalg::ChebyshevInverse c_inverse_;
+  const linalg::SaddleMatrix* K_ = nullptr;
+  std::shared_ptr<const Preconditioner> preconditioner_;
+  BackgroundTask task_;
+  std::shared_ptr<const Preconditioner> refreshed_;
+  std::shared_ptr<std::atomic<bool>> ready_;
+
+  bool constrained_ = false;            ///< the solve under way
+  std::vector<VectorX> rows_;           ///< of N
+  std::array<VectorX, 3> answer_;       ///< P~^-1 N^T
+  Mat3 gram_inverse_ = Mat3::Zero();    ///< (N N^T)^-1
+  Mat3 answer_inverse_ = Mat3::Zero();  ///< (N P~^-1 N^T)^-1
+  linalg::CgWorkspace work_;
+  VectorX r_, p_, q_;
+  linalg::ChebyshevInverse::Work c_work_;
+};
+
+}  // namespace rhexis::solver
