@@ -7,6 +7,7 @@
 #include "studies/beta_sweep.h"
 #include "studies/identification.h"
 #include "studies/iteration_timing.h"
+#include "studies/live_models.h"
 #include "studies/live_study.h"
 #include "studies/model_comparison.h"
 #include "studies/reaction_error.h"
@@ -125,6 +126,22 @@ StudyFunction live_options(CLI::App& command) {
   return runs_with(options, studies::run_live_study);
 }
 
+StudyFunction live_models_options(CLI::App& command) {
+  auto options = std::make_shared<studies::LiveModelsOptions>();
+  command.add_option("--nodes", options->nodes, "of the bodies")->type_name("COUNT")->expected(-1);
+  command.add_option("--model", options->models, "corotated, geometrically-nonlinear, hyperelastic")
+      ->type_name("NAME")
+      ->expected(-1);
+  command.add_option("--speed", options->speeds, "of the hand")->type_name("M/S")->expected(-1);
+  command.add_option("--seconds", options->seconds, "of each motion")->type_name("SECONDS");
+  command.add_option("--samples", options->samples, "instants at which the converged force is computed")
+      ->type_name("COUNT");
+  command.add_option("--corrections", options->corrections, "Newton corrections a frame")->type_name("COUNT");
+  command.add_option("--frame", options->frame, "that every frame counts as; as long as it takes unless given")
+      ->type_name("SECONDS");
+  return runs_with(options, studies::run_live_models);
+}
+
 }  // namespace
 
 std::span<const Study> all_studies() {
@@ -172,6 +189,12 @@ std::span<const Study> all_studies() {
        "--seconds 60 --nodes 5000",
        {"measure", "value", "unit", "note"},
        live_options},
+      {"live-models",
+       "How a body of each model keeps up with a hand",
+       "--nodes 2100 --model hyperelastic --speed 0.05",
+       {"tets", "model", "speed_mm_s", "frames_per_s", "frame_ms", "frame_ms_most", "late", "iterations", "residual",
+        "error_mean", "error_most"},
+       live_models_options},
   };
   return kStudies;
 }

@@ -269,7 +269,6 @@ Expected<ordered_json> run_reaction_error(const ReactionErrorOptions& options, c
                                                         advancement, advances == 1 ? &curve : nullptr);
     if (!tally) break;
     add_rows(rows, advances, *tally);
-    compare(folder, advances, rows);
     for (const auto& [distance, ways] : tally->distance)
       distance_rows.push_back(
           means_of({{"advances", advances}, {"distance_mm", 1e3 * kDistanceClass * (distance + 0.5)}}, ways));

@@ -272,6 +272,10 @@ TEST(RecordingKill, WhatAKillLeavesBehindOpensAndIsTheSameUpToItsLastFlush) {
     const Expected<CheckReport> report = check_recording(folder.only_file("recordings"));
     ASSERT_TRUE(report.has_value()) << report.error().message();
     EXPECT_EQ(report->difference, "");
+    const Expected<RecordingFile> file = RecordingFile::open(folder.only_file("recordings"));
+    ASSERT_TRUE(file.has_value()) << file.error().message();
+    EXPECT_EQ(report->steps, file->count().steps);
+    EXPECT_EQ(report->ticks, file->count().ticks);
     most_steps = std::max(most_steps, report->steps);
     test::KeptFrames shown;
     EXPECT_TRUE(ReplaySource::open(folder.only_file("recordings"), shown).has_value());
