@@ -143,8 +143,10 @@ namespace {
 /// Straight on and to both sides, by the two advances of the thesis: what is looked up does not depend on how many
 /// directions there are.
 Expected<response::SharedRecord> make_record(const StudyPlate& plate) {
-  record::build::CampaignRequest request{
-      .mesh = plate.mesh, .elastic = plate.settings.body, .crack = plate.cracks.front().line};
+  record::build::CampaignRequest request;
+  request.mesh = plate.mesh;
+  request.elastic = plate.settings.body;
+  request.crack = plate.cracks.front().line;
   request.parameters.directions = 3;
   request.parameters.advances = kImposedAdvances;
   request.parameters.lengths = {kImposedLength};

@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"TubeWithoutRadius", "mesh make tube x.msh --length 0.04 --nodes 400", "--radius is required"},
         Misuse{"TubeWithoutLength", "mesh make tube x.msh --radius 0.005 --nodes 400", "--length is required"},
         Misuse{"NegativeNumberIsAValue", "mesh make tube x.msh --nodes 400 --radius -0.005 --length 0.04", "radius"},
-        Misuse{"StudyWithoutName", "study", "`rhexis study` needs a command: restructuring"},
+        Misuse{"StudyWithoutName", "study", "`rhexis study` needs a command: identification"},
         Misuse{"StudyWithATypo", "study restructering",
                "unknown command 'restructering' (did you mean 'restructuring'?)"},
         Misuse{"NoSuchStudy", "study everything", "unknown command 'everything' (see `rhexis study --help`)"},

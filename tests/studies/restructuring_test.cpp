@@ -129,7 +129,8 @@ TEST(Restructuring, MistakesAreNamedBeforeAnythingRuns) {
   EXPECT_EQ(error_of(options), "unknown mode 'imposd' (did you mean 'imposed'?)");
   options = tiny();
   options.ways = {"exact", "magic"};
-  EXPECT_EQ(error_of(options), "unknown way 'magic' (one of dense-inverse, sparse, local, exact, exact-all-work)");
+  EXPECT_EQ(error_of(options),
+            "unknown way 'magic' (one of dense-inverse, sparse, local, exact, exact-all-work, recorded)");
   for (const int nodes : {-1, 0, 3, 2000000000}) {
     options = tiny();
     options.nodes.push_back(nodes);

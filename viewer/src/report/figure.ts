@@ -28,7 +28,7 @@ class PanelView {
     panel: Panel,
   ) {
     const empty = { node: new Uint32Array(0), local: new Uint32Array(0), held: new Uint32Array(0), fronts: [], advances: [] };
-    const words = { scene: "", title: panel.title, model: "", values: "" };
+    const words = { scene: "", title: panel.title, model: "", values: "", response: "", hasRecord: false };
     const counts = { epoch: 1, topology: 0, nodes: 0, tets: 0, meanEdge: 0, maxForce: 0, script: 0 };
     this.surface.setBody({ ...empty, ...words, ...counts, positions: shapes.reference, faces: shapes.faces });
     const lines = new THREE.BufferGeometry();
