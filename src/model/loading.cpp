@@ -222,4 +222,22 @@ void subtract_pressure_stiffness(const FollowerPressure& load, const Displacemen
   });
 }
 
+linalg::FreeDofs free_dofs(const DisplacementSpace& space, const Loading& loading) {
+  std::vector<bool> held(space.dof_count(), false);
+  for (const PrescribedDof& support : loading.supports) held[static_cast<std::size_t>(support.dof)] = true;
+  return linalg::make_free_dofs(held);
+}
+
+void external_force(const Loading& loading, const DisplacementSpace& space, const VectorX& u, double t,
+                    VectorX& force) {
+  force = t * loading.dead_force;
+  for (const FollowerPressure& load : loading.pressures) add_pressure_force(load, space, u, t, force);
+}
+
+void subtract_load_stiffness(const Loading& loading, const DisplacementSpace& space, const VectorX& u, double t,
+                             linalg::SaddleMatrix& K) {
+  K.skew.reset();
+  for (const FollowerPressure& load : loading.pressures) subtract_pressure_stiffness(load, space, u, t, K);
+}
+
 }  // namespace rhexis::model

@@ -35,6 +35,9 @@ struct Loading {
   std::vector<FollowerPressure> pressures;
 };
 
+/// Of the displacement space: all that no support gives.
+[[nodiscard]] linalg::FreeDofs free_dofs(const DisplacementSpace& space, const Loading& loading);
+
 /// force += consistent nodal forces of a body force per reference volume (N/m^3; rho0 g). P1: V/4 per node; P2: -V/20
 /// per vertex and V/5 per edge, which is the exact integral.
 void add_body_force(const mesh::TetMesh& mesh, const DisplacementSpace& space, const Vec3& force_density,
@@ -58,5 +61,12 @@ void add_pressure_force(const FollowerPressure& load, const DisplacementSpace& s
 /// a closed surface or a held rim the skew parts of the triangles cancel wherever an unknown is free, and are dropped.
 void subtract_pressure_stiffness(const FollowerPressure& load, const DisplacementSpace& space, const VectorX& u,
                                  double t, linalg::SaddleMatrix& K);
+
+/// force = t (dead forces + follower pressures at displacement u), N.
+void external_force(const Loading& loading, const DisplacementSpace& space, const VectorX& u, double t, VectorX& force);
+
+/// K -= t * d(all follower pressures)/du; K.skew is theirs alone.
+void subtract_load_stiffness(const Loading& loading, const DisplacementSpace& space, const VectorX& u, double t,
+                             linalg::SaddleMatrix& K);
 
 }  // namespace rhexis::model

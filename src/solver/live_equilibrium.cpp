@@ -20,6 +20,8 @@ constexpr double kGrowth = 4.0;
 /// Relative residual of Z when the hand takes hold.
 constexpr double kFirstAnswer = 1e-3;
 constexpr int kMostFirstIterations = 200;
+/// Solves of a column of Z, each from what the one before has left, at most.
+constexpr int kAnswerRounds = 4;
 /// Of the body's size: what takes less force to move the hand by is near to rest, and a residual is held against that.
 constexpr double kSmallMove = 0.01;
 /// Frames that may be late in a row.
@@ -29,12 +31,6 @@ constexpr int kLateCorrections = 2;
 /// Iterations from which on a preconditioner is made anew at the present state.
 constexpr int kWornIterations = 4;
 
-linalg::FreeDofs free_dofs_of(const model::Model& model, const model::Loading& loading) {
-  std::vector<bool> held(model.space().dof_count(), false);
-  for (const model::PrescribedDof& support : loading.supports) held[static_cast<std::size_t>(support.dof)] = true;
-  return linalg::make_free_dofs(held);
-}
-
 }  // namespace
 
 LiveEquilibrium::LiveEquilibrium(const model::Model& model, const model::Loading& loading, model::State state,
@@ -42,7 +38,7 @@ LiveEquilibrium::LiveEquilibrium(const model::Model& model, const model::Loading
     : model_(model),
       loading_(loading),
       options_(options),
-      free_(free_dofs_of(model, loading)),
+      free_(model::free_dofs(model.space(), loading)),
       scratch_(model.make_scratch()),
       state_(std::move(state)),
       tangent_(model.make_tangent()),
@@ -78,9 +74,7 @@ LiveEquilibrium::Trial LiveEquilibrium::evaluate(const model::State& state) {
   Trial out;
   out.evaluation = model_.residual(state, *scratch_, residual_);
   internal_ = residual_.u;
-  external_ = loading_.dead_force;
-  for (const model::FollowerPressure& load : loading_.pressures)
-    model::add_pressure_force(load, model_.space(), state.u, 1.0, external_);
+  model::external_force(loading_, model_.space(), state.u, 1.0, external_);
   residual_.u -= external_;
   if (held_) {
     multiplier_ = at_point(residual_.u) / held_->weight.squaredNorm();
@@ -102,31 +96,31 @@ bool LiveEquilibrium::is_admissible(const Trial& trial) const {
 
 void LiveEquilibrium::build_tangent() {
   model_.tangent(state_, *scratch_, tangent_);
-  tangent_.skew.reset();
-  for (const model::FollowerPressure& load : loading_.pressures)
-    model::subtract_pressure_stiffness(load, model_.space(), state_.u, 1.0, tangent_);
+  model::subtract_load_stiffness(loading_, model_.space(), state_.u, 1.0, tangent_);
   linear_.set_tangent(tangent_);
 }
 
 /// K dz = N_j - K z.
-void LiveEquilibrium::refresh_answer(int column, double tolerance, int most, int* iterations) {
+int LiveEquilibrium::refresh_answer(int column, double tolerance, int most) {
   VectorX& u = answer_u_[static_cast<std::size_t>(column)];
   VectorX& lambda = answer_lambda_[static_cast<std::size_t>(column)];
   size_.set_system(tangent_, free_);
+  int iterations = 0;
   // The polynomial for C^-1 leaves something of the pressure's row: once more from what is left.
-  for (int round = 0; round < 4; ++round) {
+  for (int round = 0; round < kAnswerRounds; ++round) {
     rhs_u_.setZero();
     rhs_lambda_.setZero();
     add_at_point(Vec3::Unit(column), rhs_u_);
     const double left = size_.measure(rhs_u_, rhs_lambda_, u, lambda) / held_->weight.norm();
-    if (left <= tolerance || *iterations >= most) return;
-    *iterations += linear_
-                       .solve(LiveLinear::Point::free, size_.u(), size_.p(), std::min(0.5, 0.5 * tolerance / left),
-                              most - *iterations, du_, dlambda_)
-                       .iterations;
+    if (left <= tolerance || iterations >= most) break;
+    iterations += linear_
+                      .solve(LiveLinear::Point::free, size_.u(), size_.p(), std::min(0.5, 0.5 * tolerance / left),
+                             most - iterations, du_, dlambda_)
+                      .iterations;
     u += du_;
     lambda += dlambda_;
   }
+  return iterations;
 }
 
 void LiveEquilibrium::update_compliance() {
@@ -153,8 +147,7 @@ void LiveEquilibrium::hold(const HeldPoint& point) {
   for (int j = 0; j < 3; ++j) {
     answer_u_[static_cast<std::size_t>(j)].setZero(state_.u.size());
     answer_lambda_[static_cast<std::size_t>(j)].setZero(state_.lambda.size());
-    int iterations = 0;
-    refresh_answer(j, kFirstAnswer, kMostFirstIterations, &iterations);
+    refresh_answer(j, kFirstAnswer, kMostFirstIterations);
   }
   update_compliance();
   now_ = evaluate(state_);
@@ -186,86 +179,89 @@ void LiveEquilibrium::correct_force() {
   force_ = multiplier_ + stiffness_ * work;
 }
 
-LiveFrame LiveEquilibrium::advance(const Vec3* hand) {
-  LiveFrame frame;
-  bool worn = false;
-  frame.refreshed = linear_.take_refreshed();
-  frame.reached = hand == nullptr || now_.relative <= options_.late;
-  if (hand != nullptr && frame.reached) {
-    // The first guess: the last tangent's answer to the move of the hand, shortened where a tet would invert.
-    const Vec3 gap = *hand - at_point(state_.u);
-    double part = 1.0;
-    Trial next;
-    for (int halving = 0;; ++halving, part *= 0.5) {
-      if (halving > kHalvings) {
-        frame.reached = false;
-        frame.trouble = fmt::format("the body cannot follow: tet {} would turn inside out",
-                                    next.evaluation.worst_tet.valid() ? next.evaluation.worst_tet.value() : -1);
-        now_ = evaluate(state_);
-        return frame;
-      }
-      const Vec3 df = part * (from_gap_ * gap);
-      trial_ = state_;
-      for (int j = 0; j < 3; ++j) {
-        trial_.u += df[j] * answer_u_[static_cast<std::size_t>(j)];
-        trial_.lambda += df[j] * answer_lambda_[static_cast<std::size_t>(j)];
-      }
-      next = evaluate(trial_);
-      if (is_admissible(next)) break;
+/// The first guess: the last tangent's answer to the move of the hand, shortened where a tet would invert. False: there
+/// is none.
+bool LiveEquilibrium::follow(const Vec3& hand, LiveFrame& frame) {
+  const Vec3 gap = hand - at_point(state_.u);
+  Trial next;
+  for (int halving = 0; halving <= kHalvings; ++halving) {
+    const Vec3 df = std::ldexp(1.0, -halving) * (from_gap_ * gap);
+    trial_ = state_;
+    for (int j = 0; j < 3; ++j) {
+      trial_.u += df[j] * answer_u_[static_cast<std::size_t>(j)];
+      trial_.lambda += df[j] * answer_lambda_[static_cast<std::size_t>(j)];
     }
-    frame.reached = part == 1.0;
+    next = evaluate(trial_);
+    if (!is_admissible(next)) continue;
+    frame.reached = halving == 0;
     std::swap(state_, trial_);
     now_ = next;
+    return true;
   }
-  const int most = now_.relative > options_.late ? kLateCorrections : options_.corrections;
-  for (; frame.corrections < most && now_.relative > options_.tolerance; ++frame.corrections) {
-    build_tangent();
-    rhs_u_ = -residual_.u;
-    rhs_lambda_ = -residual_.lambda;
-    const LiveSolve solve = linear_.solve(LiveLinear::Point::fixed, rhs_u_, rhs_lambda_, options_.forcing,
-                                          options_.iterations, du_, dlambda_);
-    frame.linear_iterations += solve.iterations;
-    worn = worn || solve.iterations >= kWornIterations || solve.truncated;
-    double part = 1.0;
-    Trial next;
-    bool taken = false;
-    for (int halving = 0; halving <= kHalvings && !taken; ++halving) {
-      part = std::ldexp(1.0, -halving);
-      trial_.u = state_.u + part * du_;
-      trial_.lambda = state_.lambda + part * dlambda_;
-      next = evaluate(trial_);
-      taken = is_admissible(next) && next.norm <= kGrowth * now_.norm;
-    }
-    if (!taken) {
-      frame.trouble = "a correction would make it worse";
-      now_ = evaluate(state_);
-      break;
-    }
+  frame.reached = false;
+  frame.trouble = fmt::format("the body cannot follow: tet {} would turn inside out",
+                              next.evaluation.worst_tet.valid() ? next.evaluation.worst_tet.value() : -1);
+  now_ = evaluate(state_);
+  return false;
+}
+
+/// One Newton correction that leaves the point where it is. False: none was taken.
+bool LiveEquilibrium::correct(LiveFrame& frame) {
+  build_tangent();
+  rhs_u_ = -residual_.u;
+  rhs_lambda_ = -residual_.lambda;
+  const LiveSolve solve = linear_.solve(LiveLinear::Point::fixed, rhs_u_, rhs_lambda_, options_.forcing,
+                                        options_.iterations, du_, dlambda_);
+  frame.linear_iterations += solve.iterations;
+  worn_ = worn_ || solve.iterations >= kWornIterations || solve.truncated;
+  for (int halving = 0; halving <= kHalvings; ++halving) {
+    const double part = std::ldexp(1.0, -halving);
+    trial_.u = state_.u + part * du_;
+    trial_.lambda = state_.lambda + part * dlambda_;
+    const Trial next = evaluate(trial_);
+    if (!is_admissible(next) || next.norm > kGrowth * now_.norm) continue;
     std::swap(state_, trial_);
     now_ = next;
+    ++frame.corrections;
+    return true;
   }
-  if (held_) {
-    if (frame.corrections > 0) {
-      next_column_ = (next_column_ + 1) % 3;
-      int iterations = 0;
-      refresh_answer(next_column_, options_.worn_answer, options_.iterations, &iterations);
-      frame.linear_iterations += iterations;
-      update_compliance();
-    }
-    correct_force();
-  }
+  frame.trouble = "a correction would make it worse";
+  now_ = evaluate(state_);
+  return false;
+}
+
+/// A state that does not find back is given up for the last one that was near to equilibrium.
+void LiveEquilibrium::keep_good(LiveFrame& frame) {
   if (now_.relative <= options_.late) {
     good_ = state_;
     late_frames_ = 0;
   } else if (++late_frames_ >= kMostLateFrames) {
-    // It does not find back: start again from the last state that was near to equilibrium.
     state_ = good_;
     now_ = evaluate(state_);
     late_frames_ = 0;
     frame.trouble = "no equilibrium near: back to the last one";
-    worn = true;
+    worn_ = true;
   }
-  if (worn) linear_.refresh(state_);
+}
+
+LiveFrame LiveEquilibrium::advance(const Vec3* hand) {
+  LiveFrame frame;
+  worn_ = false;
+  frame.refreshed = linear_.take_refreshed();
+  frame.reached = hand == nullptr || now_.relative <= options_.late;
+  if (hand != nullptr && frame.reached && !follow(*hand, frame)) return frame;
+  const int most = now_.relative > options_.late ? kLateCorrections : options_.corrections;
+  while (frame.corrections < most && now_.relative > options_.tolerance) {
+    if (!correct(frame)) break;
+  }
+  if (held_ && frame.corrections > 0) {
+    next_column_ = (next_column_ + 1) % 3;
+    frame.linear_iterations += refresh_answer(next_column_, options_.worn_answer, options_.iterations);
+    update_compliance();
+  }
+  keep_good(frame);
+  if (held_) correct_force();
+  if (worn_) linear_.refresh(state_);
   frame.residual = now_.relative;
   return frame;
 }

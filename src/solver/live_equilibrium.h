@@ -81,11 +81,15 @@ class LiveEquilibrium {
     double relative = 0.0;
   };
   LiveFrame advance(const Vec3* hand);
+  bool follow(const Vec3& hand, LiveFrame& frame);
+  bool correct(LiveFrame& frame);
+  void keep_good(LiveFrame& frame);
   /// Leaves the residual in residual_ and the hand's force that makes it least in multiplier_.
   Trial evaluate(const model::State& state);
   [[nodiscard]] bool is_admissible(const Trial& trial) const;
   void build_tangent();
-  void refresh_answer(int column, double tolerance, int most, int* iterations);
+  /// Brings a column of Z to a relative residual; gives the iterations that it took.
+  int refresh_answer(int column, double tolerance, int most);
   [[nodiscard]] Vec3 at_point(const VectorX& u) const;
   void add_at_point(const Vec3& force, VectorX& out) const;
   void update_compliance();
@@ -117,6 +121,7 @@ class LiveEquilibrium {
   model::State trial_;
   model::State good_;  ///< the last one near to equilibrium
   int late_frames_ = 0;
+  bool worn_ = false;          ///< the frame has found the preconditioner wanting
   double size_of_body_ = 0.0;  ///< m
   double small_force_ = 0.0;   ///< N
   VectorX du_, dlambda_, rhs_u_, rhs_lambda_;

@@ -83,7 +83,7 @@ struct LiveLinear::Preconditioner {
 };
 
 LiveLinear::LiveLinear(const model::Model& model, const linalg::FreeDofs& free, const model::State& state)
-    : model_(model), free_(free), ready_(std::make_shared<std::atomic<bool>>(false)) {
+    : model_(model), free_(free) {
   const linalg::SaddleMatrix K = model.make_tangent();
   if (K.C.rows() > 0) c_inverse_ = linalg::ChebyshevInverse(K.C, kPressureReduction);
   preconditioner_ = prepare(state);
@@ -210,7 +210,6 @@ LiveSolve LiveLinear::solve(Point point, const VectorX& bu, const VectorX& bp, d
         tolerance * norm, most, work_, r_, xu);
     out.iterations = result.iterations;
     out.truncated = result.end == linalg::CgEnd::negative_curvature;
-    out.relative_residual = r_.norm() / norm;
     if (out.truncated && result.iterations == 1) xu = work_.z;  // nothing yet: the preconditioned residual, downhill
   }
   xp.setZero(bp.size());
@@ -224,17 +223,15 @@ LiveSolve LiveLinear::solve(Point point, const VectorX& bu, const VectorX& bp, d
 
 void LiveLinear::refresh(const model::State& state) {
   if (task_.under_way()) return;
-  *ready_ = false;
+  ready_ = false;
   task_.start([this, state] {
     refreshed_ = prepare(state);
-    *ready_ = true;
+    ready_ = true;
   });
 }
 
-bool LiveLinear::refreshing() const { return task_.under_way(); }
-
 bool LiveLinear::take_refreshed() {
-  if (!task_.under_way() || !*ready_) return false;
+  if (!task_.under_way() || !ready_) return false;
   task_.wait();
   preconditioner_ = std::move(refreshed_);
   prepare_constraint();

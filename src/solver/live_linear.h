@@ -27,7 +27,6 @@ namespace rhexis::solver {
 
 struct LiveSolve {
   int iterations = 0;
-  double relative_residual = 1.0;  ///< of the last one, by the recurrence
   bool truncated = false;  ///< a direction of negative curvature was met, and what there was before it is the answer
 };
 
@@ -51,7 +50,6 @@ class LiveLinear {
   void refresh(const model::State& state);
   /// Takes it up if it is there. True: it was.
   bool take_refreshed();
-  [[nodiscard]] bool refreshing() const;
 
  private:
   struct Preconditioner;
@@ -66,9 +64,6 @@ class LiveLinear {
   linalg::ChebyshevInverse c_inverse_;
   const linalg::SaddleMatrix* K_ = nullptr;
   std::shared_ptr<const Preconditioner> preconditioner_;
-  BackgroundTask task_;
-  std::shared_ptr<const Preconditioner> refreshed_;
-  std::shared_ptr<std::atomic<bool>> ready_;
 
   bool constrained_ = false;            ///< the solve under way
   std::vector<VectorX> rows_;           ///< of N
@@ -78,6 +73,10 @@ class LiveLinear {
   linalg::CgWorkspace work_;
   VectorX r_, p_, q_;
   linalg::ChebyshevInverse::Work c_work_;
+
+  std::shared_ptr<const Preconditioner> refreshed_;
+  std::atomic<bool> ready_ = false;
+  BackgroundTask task_;  ///< writes the two above: it has to end before they do, so it stands last
 };
 
 }  // namespace rhexis::solver

@@ -11,12 +11,6 @@
 namespace rhexis::solver {
 namespace {
 
-linalg::FreeDofs free_dofs_of(const model::Model& model, const model::Loading& loading) {
-  std::vector<bool> held(model.space().dof_count(), false);
-  for (const model::PrescribedDof& support : loading.supports) held[static_cast<std::size_t>(support.dof)] = true;
-  return linalg::make_free_dofs(held);
-}
-
 /// 0 / 0 is 0: nothing is wrong with a body on which nothing acts.
 double ratio(double value, double scale) {
   if (value == 0.0) return 0.0;
@@ -28,7 +22,7 @@ std::string tet_name(TetId tet) { return tet.valid() ? fmt::format("tet {}", tet
 }  // namespace
 
 Newton::Newton(const model::Model& model, const model::Loading& loading, const Options& options)
-    : model_(model), loading_(loading), options_(options), free_(free_dofs_of(model, loading)) {
+    : model_(model), loading_(loading), options_(options), free_(model::free_dofs(model.space(), loading)) {
   if (options.linear == "minres") blocks_ = model.preconditioner();
   linear_ = linalg::make_saddle_solver(options.linear, &blocks_);
   scratch_ = model.make_scratch();
@@ -48,9 +42,7 @@ model::Evaluation Newton::evaluate(double t, const model::State& state) {
   const ScopedTimer timer(build_seconds_);
   const model::Evaluation evaluation = model_.residual(state, *scratch_, residual_);
   internal_ = residual_.u;
-  external_ = t * loading_.dead_force;
-  for (const model::FollowerPressure& load : loading_.pressures)
-    model::add_pressure_force(load, model_.space(), state.u, t, external_);
+  model::external_force(loading_, model_.space(), state.u, t, external_);
   residual_.u -= external_;
   return evaluation;
 }
@@ -66,9 +58,7 @@ Newton::Norms Newton::norms(const model::State& state) const {
 void Newton::build_tangent(double t, const model::State& state) {
   const ScopedTimer timer(build_seconds_);
   model_.tangent(state, *scratch_, tangent_);
-  tangent_.skew.reset();
-  for (const model::FollowerPressure& load : loading_.pressures)
-    model::subtract_pressure_stiffness(load, model_.space(), state.u, t, tangent_);
+  model::subtract_load_stiffness(loading_, model_.space(), state.u, t, tangent_);
 }
 
 /// K (du, dlambda) = -(R_u, R_lambda) with du = held_increment on the held dofs.

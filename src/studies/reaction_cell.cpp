@@ -1,7 +1,10 @@
 #include "studies/reaction_cell.h"
 
+#include <algorithm>
+#include <array>
 #include <memory>
 
+#include "record/store/axis.h"
 #include "record/store/operator.h"
 #include "response/local_ritz.h"
 
@@ -91,20 +94,22 @@ struct Weights {
 
 Weights weights_of(const ReactionCell& cell, const std::vector<Corner>& corners, const std::vector<double>& angles) {
   Weights out;
-  std::size_t nearest = 0;
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    double weight = 1.0;
-    bool is_nearest = true;
-    for (std::size_t i = 0; i < angles.size(); ++i) {
-      const double high = (angles[i] - cell.low[i]) / (cell.high[i] - cell.low[i]);
-      const bool at_high = corners[k].torn.angles[i] == cell.high[i];
-      weight *= at_high ? high : 1.0 - high;
-      is_nearest = is_nearest && at_high == (high > 0.5);
+  out.of.assign(corners.size(), 1.0);
+  std::vector<bool> is_nearest(corners.size(), true);
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const std::array<double, 2> axis{cell.low[i], cell.high[i]};
+    const record::store::Neighbours near = record::store::neighbours_on(axis, angles[i]);
+    const double nearest = axis[static_cast<std::size_t>(record::store::nearest_on(axis, angles[i]))];
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const double at = corners[k].torn.angles[i];
+      double weight = 0.0;  // both neighbours are the end where the angle is that
+      for (std::size_t n = 0; n < 2; ++n)
+        weight += axis[static_cast<std::size_t>(near.index[n])] == at ? near.weight[n] : 0.0;
+      out.of[k] *= weight;
+      is_nearest[k] = is_nearest[k] && at == nearest;
     }
-    out.of.push_back(weight);
-    if (is_nearest) nearest = k;
   }
-  out.nearest = nearest;
+  out.nearest = static_cast<std::size_t>(std::find(is_nearest.begin(), is_nearest.end(), true) - is_nearest.begin());
   return out;
 }
 
