@@ -18,7 +18,7 @@ namespace {
 /// Rows that one thread takes at a time.
 constexpr std::size_t kGrain = 16384;
 constexpr std::int32_t kPatchSize = 60;
-constexpr std::int32_t kMostPatches = 256;
+constexpr std::int32_t kMostPatches = 512;
 constexpr int kLanczosSteps = 120;
 constexpr int kLanczosCheck = 20;  ///< steps after which the estimate is looked at again
 constexpr double kLanczosChange = 0.01;
