@@ -121,7 +121,8 @@ StudyFunction angle_perception_options(CLI::App& command) {
       ->type_name("NAME");
   command.add_option("--motion-scale", person->motion_scale, "m in the scene for a metre of the device")
       ->type_name("FACTOR");
-  command.add_option("--force-scale", person->force_scale, "N at the device for a newton in the scene; 0.1 unless given")
+  command
+      .add_option("--force-scale", person->force_scale, "N at the device for a newton in the scene; 0.1 unless given")
       ->type_name("FACTOR");
   person->view = add_live_view_options(command);
   return [=](const studies::StudyFolder& folder, const studies::Progress& progress) {

@@ -287,6 +287,8 @@ Expected<ordered_json> write_answers(const PerceptionSettings& settings, const s
   folder.note(fmt::format(
       "{} trials by the rule '{}', seed {}. {}", answered.size(), settings.rule.name, settings.seed,
       from ? fmt::format("Told apart from {} degrees on.", *from) : "No class of differences is told apart."));
+  folder.compare("angle-perception.threshold", or_null(from),
+                 "Of these answers: other hands, another device and plate than the thesis's.");
   Expected<void> ok = folder.write_table("angle-perception", rows, "As Table 5.4 of the thesis, which stands below.");
   if (ok)
     ok = write_fit(folder,

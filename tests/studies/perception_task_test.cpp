@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 
 #include "tests/session/live_case.h"
@@ -58,6 +59,10 @@ struct TaskCase {
     say(std::move(grasp));
     EXPECT_TRUE(test::wait_until([&] { return state().held; }));
   }
+  void wait_for_grip() {
+    const std::uint64_t begun = state().tick;
+    EXPECT_TRUE(test::wait_until([&] { return state().tick > begun + kGripTicks; }));
+  }
   /// Pulls at that plate, gives the State when the hand is there, and lets go.
   wire::StateT feel(Presented presented) {
     choose(presented);
@@ -66,8 +71,7 @@ struct TaskCase {
     live->post(test::move_to(to.x(), to.y(), to.z()));
     EXPECT_TRUE(
         test::wait_until([&] { return state().held && state().hand && state().force && state().hand->x() != 0.0; }));
-    const std::uint64_t arrived = state().tick;
-    EXPECT_TRUE(test::wait_until([&] { return state().tick > arrived + kGripTicks; }));
+    wait_for_grip();
     const wire::StateT there = state();
     say(wire::LetGoT{});
     EXPECT_TRUE(test::wait_until([&] { return !state().held; }));
@@ -154,17 +158,24 @@ TEST(PerceptionTask, IsNoFreePlay) {
   EXPECT_FALSE(at.state().recording);
 }
 
-/// One that pushes back, absolute, and drifts across the experiment's direction too.
+/// One that pushes back, absolute. It goes where it is told by 10 mm/s, and drifts across the experiment's direction
+/// too.
 class Machine final : public haptics::Device {
  public:
-  explicit Machine(std::shared_ptr<std::atomic<double>> x) : x_(std::move(x)) {}
+  static constexpr double kStep = 1e-5;  // m a tick
+
+  explicit Machine(std::shared_ptr<std::atomic<double>> target) : target_(std::move(target)) {}
   [[nodiscard]] const haptics::DeviceTraits& traits() const override { return traits_; }
-  haptics::Reading read(std::uint64_t) noexcept override { return {.position = Vec3(0.1 + *x_, 0.2 - *x_, *x_)}; }
+  haptics::Reading read(std::uint64_t) noexcept override {
+    x_ += std::clamp(*target_ - x_, -kStep, kStep);
+    return {.position = Vec3(0.1 + x_, 0.2 + 0.3 * x_, x_)};
+  }
   void write(const Vec3&) noexcept override {}
 
  private:
   haptics::DeviceTraits traits_{.name = "machine", .what = "", .max_force = 8.9};
-  std::shared_ptr<std::atomic<double>> x_;
+  std::shared_ptr<std::atomic<double>> target_;
+  double x_ = 0.0;
 };
 
 TEST(PerceptionTask, BindsAMachineThatPushesBack) {
@@ -178,9 +189,10 @@ TEST(PerceptionTask, BindsAMachineThatPushesBack) {
     *x = 0.0;
     at.choose(presented);
     at.hold();
+    at.wait_for_grip();  // which slips while it closes, and in which the machine goes back
     *x = -kPull;
-    ASSERT_TRUE(
-        test::wait_until([&] { return at.state().hand->x() != 0.0 && vector_of(at.state().force).norm() > 0.01; }));
+    ASSERT_TRUE(test::wait_until(
+        [&] { return vector_of(at.state().hand).norm() > 1e-4 && vector_of(at.state().force).norm() > 0.01; }));
     const Vec3 hand = vector_of(at.state().hand);
     EXPECT_NEAR((hand - along * along.dot(hand)).norm(), 0.0, 1e-15);
     at.say(wire::LetGoT{});  // the grip opens over some 50 ms, and the next plate waits for that
