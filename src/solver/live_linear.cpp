@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "base/check.h"
+#include "base/parallel.h"
 
 namespace rhexis::solver {
 namespace {
@@ -74,59 +75,71 @@ class TetTangents final : public linalg::ElementSource {
 /// Never changes once made.
 struct LiveLinear::Preconditioner {
   std::shared_ptr<const linalg::FrontTree> tree;
+  std::unique_ptr<const linalg::FrontSolver> solver;  ///< of the tree
   linalg::PressurePatches patches;
+  std::vector<Mat3> rotation;  ///< per node, at its state
 
-  void solve(const VectorX& r, VectorX& z) const {
-    tree->solve(r, z);
+  void solve(const VectorX& r, VectorX& z, linalg::FrontSolver::Work& work) const {
+    solver->solve(r, z, work);
     patches.apply(r, z);
   }
 };
 
 LiveLinear::LiveLinear(const model::Model& model, const linalg::FreeDofs& free, const model::State& state)
-    : model_(model), free_(free) {
-  const linalg::SaddleMatrix K = model.make_tangent();
-  if (K.C.rows() > 0) c_inverse_ = linalg::ChebyshevInverse(K.C, kPressureReduction);
-  preconditioner_ = prepare(state);
+    : model_(model), free_(free), rotations_(model.space()) {
+  linalg::SaddleMatrix K = model.make_tangent();
+  if (K.C.rows() > 0) {
+    c_inverse_ = linalg::ChebyshevInverse(K.C, kPressureReduction);
+    model.tangent(state, *model.make_scratch(), K);
+    set_patches(K);
+  }
+  preconditioner_ = prepare(state, nullptr);
+}
+
+/// Once: A and B set a weight alone, and C stays.
+void LiveLinear::set_patches(const linalg::SaddleMatrix& K) {
+  const linalg::ChebyshevInverse inverse(K.C, kPatchReduction);
+  patches_.set(K, [&](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
+    VectorX column;
+    VectorX solved;
+    linalg::ChebyshevInverse::Work work;
+    for (Eigen::Index j = 0; j < b.cols(); ++j) {
+      column = b.col(j);
+      inverse.apply(column, solved, work);
+      x.col(j) = solved;
+    }
+  });
 }
 
 LiveLinear::~LiveLinear() = default;
 
-std::shared_ptr<const LiveLinear::Preconditioner> LiveLinear::prepare(const model::State& state) const {
+std::shared_ptr<const LiveLinear::Preconditioner> LiveLinear::prepare(const model::State& state,
+                                                                      const linalg::FrontTree* before) const {
   auto out = std::make_shared<Preconditioner>();
   TetTangents tets(model_, free_, state);
-  linalg::SaddleMatrix K = model_.make_tangent();
-  if (K.C.rows() > 0) {
-    const auto scratch = model_.make_scratch();
-    model_.tangent(state, *scratch, K);
-    const linalg::ChebyshevInverse inverse(K.C, kPatchReduction);
-    out->patches.set(K, [&](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
-      VectorX column;
-      VectorX solved;
-      linalg::ChebyshevInverse::Work work;
-      for (Eigen::Index j = 0; j < b.cols(); ++j) {
-        column = b.col(j);
-        inverse.apply(column, solved, work);
-        x.col(j) = solved;
-      }
-    });
-    tets.set_diagonal(out->patches.diagonal());
-  }
+  out->patches = patches_;
+  rotations_.measure(state.u, out->rotation);
+  tets.set_diagonal(patches_.diagonal());
   // A body under compression may have no definite tangent: what is solved is one that is stiffer.
   constexpr double kFirstShift = 0.03;
   constexpr double kLargestShift = 3.0;
   for (double shift = 0.0;; shift = std::max(kFirstShift, 3.0 * shift)) {
     tets.shift_by(shift);
-    out->tree = linalg::FrontTree::make(tets, {});
+    out->tree = before != nullptr ? before->refactored(tets) : linalg::FrontTree::make(tets, {});
     if (out->tree->outcome() == linalg::FrontOutcome::ok) break;
     RHEXIS_CHECK(shift <= kLargestShift, "not positive definite with {} of its diagonal added", shift);
   }
-  if (K.C.rows() > 0) {
+  out->solver = std::make_unique<const linalg::FrontSolver>(*out->tree);
+  if (patches_.count() > 0) {
+    linalg::SaddleMatrix K = model_.make_tangent();
+    model_.tangent(state, *model_.make_scratch(), K);
     out->patches.correct(K, free_, [&](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
       VectorX column;
       VectorX solved;
+      linalg::FrontSolver::Work work;
       for (Eigen::Index j = 0; j < b.cols(); ++j) {
         column = b.col(j);
-        out->tree->solve(column, solved);
+        out->solver->solve(column, solved, work);
         x.col(j) = solved;
       }
     });
@@ -134,11 +147,36 @@ std::shared_ptr<const LiveLinear::Preconditioner> LiveLinear::prepare(const mode
   return out;
 }
 
-void LiveLinear::set_tangent(const linalg::SaddleMatrix& K) {
+void LiveLinear::set_tangent(const linalg::SaddleMatrix& K, const model::State& state) {
   K_ = &K;
   const Eigen::Index dofs = K.displacement_unknowns();
   work_.resize(dofs);
   for (VectorX* v : {&p_, &q_}) v->resize(K.C.rows());
+  rotations_.measure(state.u, rotation_);
+  turn();
+}
+
+/// T, and P~^-1 N^T by it.
+void LiveLinear::turn() {
+  turn_.resize(rotation_.size());
+  for (std::size_t i = 0; i < turn_.size(); ++i) turn_[i] = rotation_[i] * preconditioner_->rotation[i].transpose();
+  if (!point_) return;
+  Mat3 answer;
+  for (int j = 0; j < 3; ++j) {
+    VectorX& of = answer_[static_cast<std::size_t>(j)];
+    of.setZero(of_nodes_.front().size());
+    for (int k = 0; k < point_->count; ++k) {
+      const Mat3& at = turn_[static_cast<std::size_t>(point_->node[static_cast<std::size_t>(k)])];
+      for (int c = 0; c < 3; ++c) of += point_->weight[k] * at(j, c) * of_nodes_[static_cast<std::size_t>(3 * k + c)];
+    }
+    for (std::size_t i = 0; i < turn_.size(); ++i) {
+      auto x = of.segment<3>(static_cast<Eigen::Index>(3 * i));
+      x = (turn_[i] * x).eval();
+    }
+    linalg::clear_held(free_, of);
+    answer.col(j) = point_->of(of);
+  }
+  answer_inverse_ = answer.inverse();
 }
 
 void LiveLinear::apply(const VectorX& x, VectorX& y) {
@@ -152,41 +190,45 @@ void LiveLinear::apply(const VectorX& x, VectorX& y) {
   project(y);
 }
 
-void LiveLinear::set_constraint(std::vector<VectorX> rows) {
-  RHEXIS_CHECK(rows.empty() || rows.size() == 3, "{} rows", rows.size());
-  rows_ = std::move(rows);
-  prepare_constraint();
+void LiveLinear::set_constraint(const std::optional<HeldPoint>& point) {
+  point_ = point;
+  solve_for_point();
 }
 
-void LiveLinear::prepare_constraint() {
-  if (rows_.empty()) return;
-  Mat3 gram;
-  Mat3 answer;
-  for (std::size_t j = 0; j < 3; ++j) {
-    answer_[j].resize(rows_[j].size());
-    preconditioner_->solve(rows_[j], answer_[j]);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      const auto column = static_cast<Eigen::Index>(j);
-      gram(row, column) = rows_[i].dot(rows_[j]);
-      answer(row, column) = rows_[i].dot(answer_[j]);
-    }
+void LiveLinear::solve_for_point() {
+  of_nodes_.clear();
+  if (!point_) return;
+  VectorX unit = VectorX::Zero(static_cast<Eigen::Index>(model_.space().dof_count()));
+  for (int k = 0; k < 3 * point_->count; ++k) {
+    const Eigen::Index dof = 3 * Eigen::Index{point_->node[static_cast<std::size_t>(k / 3)]} + k % 3;
+    unit[dof] = 1.0;
+    preconditioner_->solve(unit, of_nodes_.emplace_back(), front_work_);
+    unit[dof] = 0.0;
   }
-  gram_inverse_ = gram.inverse();
-  answer_inverse_ = answer.inverse();
+  if (!rotation_.empty()) turn();
 }
 
 /// r -= N^T (N N^T)^-1 N r.
 void LiveLinear::project(VectorX& r) const {
-  if (!constrained_) return;
-  const Vec3 along = gram_inverse_ * Vec3(rows_[0].dot(r), rows_[1].dot(r), rows_[2].dot(r));
-  for (std::size_t j = 0; j < 3; ++j) r -= along[static_cast<Eigen::Index>(j)] * rows_[j];
+  if (constrained_) point_->add(-point_->of(r) / point_->weight.squaredNorm(), r);
 }
 
-void LiveLinear::precondition(const VectorX& r, VectorX& z) const {
-  preconditioner_->solve(r, z);
+/// T P~^-1 T^T r, and what of it moves the point taken back.
+void LiveLinear::precondition(const VectorX& r, VectorX& z) {
+  turned_.resize(r.size());
+  for (std::size_t i = 0; i < turn_.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(3 * i);
+    turned_.segment<3>(at).noalias() = turn_[i].transpose() * r.segment<3>(at);
+  }
+  preconditioner_->solve(turned_, solved_, front_work_);
+  z.resize(r.size());
+  for (std::size_t i = 0; i < turn_.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(3 * i);
+    z.segment<3>(at).noalias() = turn_[i] * solved_.segment<3>(at);
+  }
+  linalg::clear_held(free_, z);
   if (!constrained_) return;
-  const Vec3 off = answer_inverse_ * Vec3(rows_[0].dot(z), rows_[1].dot(z), rows_[2].dot(z));
+  const Vec3 off = answer_inverse_ * point_->of(z);
   for (std::size_t j = 0; j < 3; ++j) z -= off[static_cast<Eigen::Index>(j)] * answer_[j];
 }
 
@@ -194,7 +236,7 @@ LiveSolve LiveLinear::solve(Point point, const VectorX& bu, const VectorX& bp, d
                             VectorX& xp) {
   RHEXIS_CHECK(K_ != nullptr, "no tangent");
   LiveSolve out;
-  constrained_ = point == Point::fixed && !rows_.empty();
+  constrained_ = point == Point::fixed && point_.has_value();
   r_ = bu;
   if (bp.size() > 0) {
     c_inverse_.apply(bp, p_, c_work_);
@@ -224,8 +266,9 @@ LiveSolve LiveLinear::solve(Point point, const VectorX& bu, const VectorX& bp, d
 void LiveLinear::refresh(const model::State& state) {
   if (task_.under_way()) return;
   ready_ = false;
-  task_.start([this, state] {
-    refreshed_ = prepare(state);
+  task_.start([this, state, tree = preconditioner_->tree] {
+    const OneThreadHere beside;
+    refreshed_ = prepare(state, tree.get());
     ready_ = true;
   });
 }
@@ -234,7 +277,8 @@ bool LiveLinear::take_refreshed() {
   if (!task_.under_way() || !ready_) return false;
   task_.wait();
   preconditioner_ = std::move(refreshed_);
-  prepare_constraint();
+  solve_for_point();
+  if (!point_ && !rotation_.empty()) turn();
   return true;
 }
 

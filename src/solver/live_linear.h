@@ -13,17 +13,39 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/background.h"
 #include "linalg/chebyshev_inverse.h"
 #include "linalg/conjugate_gradients.h"
+#include "linalg/front_solver.h"
 #include "linalg/front_tree.h"
 #include "linalg/pressure_patches.h"
 #include "linalg/saddle_residual.h"
 #include "model/model.h"
+#include "solver/node_rotations.h"
 
 namespace rhexis::solver {
+
+/// A surface point: the first `count` nodes, weights of sum 1.
+struct HeldPoint {
+  std::array<std::int32_t, 3> node{};
+  Vec3 weight = Vec3::Zero();
+  int count = 0;
+
+  /// N x.
+  [[nodiscard]] Vec3 of(const VectorX& x) const {
+    Vec3 out = Vec3::Zero();
+    for (int k = 0; k < count; ++k)
+      out += weight[k] * x.segment<3>(3 * Eigen::Index{node[static_cast<std::size_t>(k)]});
+    return out;
+  }
+  /// x += N^T f.
+  void add(const Vec3& f, VectorX& x) const {
+    for (int k = 0; k < count; ++k) x.segment<3>(3 * Eigen::Index{node[static_cast<std::size_t>(k)]}) += weight[k] * f;
+  }
+};
 
 struct LiveSolve {
   int iterations = 0;
@@ -36,10 +58,13 @@ class LiveLinear {
   LiveLinear(const model::Model& model, const linalg::FreeDofs& free, const model::State& state);
   ~LiveLinear();
 
-  /// The matrix of the solves that follow; stays with the caller.
-  void set_tangent(const linalg::SaddleMatrix& K);
-  /// N of the solves that are to leave N x = 0, by its three rows; empty: there is none.
-  void set_constraint(std::vector<VectorX> rows);
+  /// The matrix of the solves that follow, the tangent at `state`; stays with the caller. The preconditioner turns with
+  /// the body.
+  void set_tangent(const linalg::SaddleMatrix& K, const model::State& state);
+  /// Per node, how far it had turned at the last tangent.
+  [[nodiscard]] const std::vector<Mat3>& rotation() const { return rotation_; }
+  /// N of the solves that are to leave N x = 0: the displacement of the point. Empty: there is none.
+  void set_constraint(const std::optional<HeldPoint>& point);
   /// K (xu, xp) ~ (bu, bp) over the free dofs to a relative residual of `tolerance`, at most `most` iterations.
   /// `fixed`: with N xu = 0, by projection of the residuals and a preconditioner that knows the constraint (Gould,
   /// Hribar, Nocedal 2001); what is left of a residual along N^T is the force that keeps it, and counts as nothing.
@@ -50,29 +75,41 @@ class LiveLinear {
   void refresh(const model::State& state);
   /// Takes it up if it is there. True: it was.
   bool take_refreshed();
+  [[nodiscard]] bool is_refreshing() const { return task_.under_way() && !ready_; }
 
  private:
   struct Preconditioner;
-  [[nodiscard]] std::shared_ptr<const Preconditioner> prepare(const model::State& state) const;
+  void set_patches(const linalg::SaddleMatrix& K);
+  /// `before`: a factor of the same elements, whose order is taken; null: none.
+  [[nodiscard]] std::shared_ptr<const Preconditioner> prepare(const model::State& state,
+                                                              const linalg::FrontTree* before) const;
   void apply(const VectorX& x, VectorX& y);
-  void precondition(const VectorX& r, VectorX& z) const;
+  void precondition(const VectorX& r, VectorX& z);
   void project(VectorX& r) const;
-  void prepare_constraint();
+  void solve_for_point();
+  void turn();
 
   const model::Model& model_;
   const linalg::FreeDofs& free_;
   linalg::ChebyshevInverse c_inverse_;
+  linalg::PressurePatches patches_;  ///< what depends on C alone
   const linalg::SaddleMatrix* K_ = nullptr;
   std::shared_ptr<const Preconditioner> preconditioner_;
 
-  bool constrained_ = false;            ///< the solve under way
-  std::vector<VectorX> rows_;           ///< of N
-  std::array<VectorX, 3> answer_;       ///< P~^-1 N^T
-  Mat3 gram_inverse_ = Mat3::Zero();    ///< (N N^T)^-1
+  NodeRotations rotations_;
+  std::vector<Mat3> rotation_;  ///< of each node at the tangent
+  std::vector<Mat3> turn_;      ///< T, since the preconditioner's state
+  VectorX turned_, solved_;
+
+  bool constrained_ = false;  ///< the solve under way
+  std::optional<HeldPoint> point_;
+  std::vector<VectorX> of_nodes_;       ///< P~^-1 of each dof of the point's nodes, as the preconditioner lies
+  std::array<VectorX, 3> answer_;       ///< P~^-1 N^T, turned
   Mat3 answer_inverse_ = Mat3::Zero();  ///< (N P~^-1 N^T)^-1
   linalg::CgWorkspace work_;
   VectorX r_, p_, q_;
   linalg::ChebyshevInverse::Work c_work_;
+  linalg::FrontSolver::Work front_work_;
 
   std::shared_ptr<const Preconditioner> refreshed_;
   std::atomic<bool> ready_ = false;
