@@ -6,6 +6,7 @@
 #include "apps/interrupt.h"
 #include "haptics/device_list.h"
 #include "session/live_session.h"
+#include "studies/perception_answers.h"
 #include "studies/perception_task.h"
 
 namespace rhexis::apps {
@@ -47,13 +48,11 @@ void wait(const studies::PerceptionTask& task, const studies::Progress& progress
 
 }  // namespace
 
-Expected<nlohmann::ordered_json> run_with_person(const studies::AnglePerceptionOptions& options,
+Expected<nlohmann::ordered_json> run_with_person(const studies::PerceptionSettings& settings,
                                                  const PersonOptions& person, const studies::StudyFolder& folder,
                                                  const studies::Progress& progress) {
-  const Expected<studies::PerceptionSettings> settings = options.settings();
-  if (!settings) return fail(settings.error());
   Expected<std::shared_ptr<studies::PerceptionTask>> task =
-      studies::PerceptionTask::make(*settings, folder.path() / studies::TrialLog::kName);
+      studies::PerceptionTask::make(settings, folder.path() / studies::TrialLog::kName);
   if (!task) return fail(std::move(task.error()));
   Relay relay;
   Expected<std::unique_ptr<session::LiveSession>> live = session::LiveSession::open(settings_of(person, *task), relay);
@@ -68,7 +67,7 @@ Expected<nlohmann::ordered_json> run_with_person(const studies::AnglePerceptionO
   (*server)->stop();
   if (!(*task)->standing().is_over) folder.note("The experiment is not at its end: the same command goes on with it.");
   tell((*task)->standing(), progress);
-  return studies::write_answers(*settings, (*task)->answered(), folder);
+  return studies::write_answers(settings, (*task)->answered(), folder);
 }
 
 }  // namespace rhexis::apps

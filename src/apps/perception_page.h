@@ -9,7 +9,8 @@
 
 #include "apps/live_view.h"
 #include "haptics/pointer_device.h"
-#include "studies/angle_perception.h"
+#include "studies/perception_settings.h"
+#include "studies/study_folder.h"
 
 namespace rhexis::apps {
 
@@ -23,7 +24,7 @@ struct PersonOptions {
 
 /// Until the last trial is answered, or Ctrl-C; answers go into `folder`, where the same experiment goes on the next
 /// time. Errors: as of PerceptionTask, LiveSession and the server; not an answer.
-Expected<nlohmann::ordered_json> run_with_person(const studies::AnglePerceptionOptions& options,
+Expected<nlohmann::ordered_json> run_with_person(const studies::PerceptionSettings& settings,
                                                  const PersonOptions& person, const studies::StudyFolder& folder,
                                                  const studies::Progress& progress);
 

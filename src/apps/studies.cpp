@@ -12,6 +12,7 @@
 #include "studies/live_models.h"
 #include "studies/live_study.h"
 #include "studies/model_comparison.h"
+#include "studies/perception_answers.h"
 #include "studies/reaction_error.h"
 #include "studies/restructuring.h"
 #include "studies/stability_map.h"
@@ -126,9 +127,11 @@ StudyFunction angle_perception_options(CLI::App& command) {
       ->type_name("FACTOR");
   person->view = add_live_view_options(command);
   return [=](const studies::StudyFolder& folder, const studies::Progress& progress) {
-    if (!answers->empty()) return studies::run_scripted_answers(*options, *answers, folder, progress);
-    return *with == "person" ? run_with_person(*options, *person, folder, progress)
-                             : studies::run_angle_perception(*options, folder, progress);
+    if (answers->empty() && *with != "person") return studies::run_angle_perception(*options, folder, progress);
+    const Expected<studies::PerceptionSettings> settings = options->settings();
+    if (!settings) return Expected<nlohmann::ordered_json>(fail(settings.error()));
+    return answers->empty() ? run_with_person(*settings, *person, folder, progress)
+                            : studies::run_scripted_answers(*settings, *answers, folder, progress);
   };
 }
 

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include <fmt/format.h>
 
 #include "base/parallel.h"
-#include "scene/scene.h"
 #include "studies/angle_perception_figures.h"
 #include "studies/perception_analysis.h"
-#include "studies/perception_log.h"
 #include "studies/perception_plate.h"
+#include "studies/perception_tables.h"
 #include "studies/published.h"
 #include "studies/simulated_observer.h"
 
@@ -30,28 +28,6 @@ constexpr int kGroups = 200;
 constexpr int kLongRuns = 2;
 /// degrees, of angle-perception-feel: halves of 45 and what (5.2) makes of them.
 constexpr double kFelt[] = {1.40625, 2.8125, 5.625, 11.25, 16.875, 22.5, 33.75, 45.0, 67.5};
-
-ordered_json or_null(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
-ordered_json class_row(std::string_view source, const DifferenceClass& one) {
-  return {{"source", source},   {"from", one.from},           {"to", or_null(one.to)}, {"trials", one.trials},
-          {"right", one.right}, {"critical", one.critical()}, {"told", one.is_told()}};
-}
-
-ordered_json fit_row(std::string_view source, std::span<const AnswerCount> answers,
-                     const std::optional<PsychometricFit>& fit) {
-  int trials = 0;
-  for (const AnswerCount& count : answers) trials += count.trials;
-  ordered_json row{{"source", source}, {"trials", trials}};
-  row["threshold"] = fit ? ordered_json(fit->function.threshold) : ordered_json(nullptr);
-  row["low"] = fit ? or_null(fit->low) : ordered_json(nullptr);
-  row["high"] = fit ? or_null(fit->high) : ordered_json(nullptr);
-  row["slope"] = fit ? ordered_json(fit->function.slope) : ordered_json(nullptr);
-  row["lapse"] = fit ? ordered_json(fit->function.lapse) : ordered_json(nullptr);
-  return row;
-}
 
 /// Table 5.4 as seven observers of one function would fill it on average, by the rule of the thesis.
 std::vector<ordered_json> expected_rows(PerceptionSettings settings, const Psychometric& truth, std::uint64_t seed) {
@@ -158,34 +134,6 @@ void beside_the_thesis(const StudyFolder& folder, const ordered_json& rows) {
   }
 }
 
-Expected<void> write_fit(const StudyFolder& folder, const ordered_json& rows) {
-  return folder.write_table("angle-perception-fit", rows,
-                            "The difference at which three of four answers are right (degrees), with its 95% interval "
-                            "by profile likelihood; an "
-                            "empty end is not bounded by the answers.");
-}
-
-/// Line and answer.
-using ScriptedAnswers = std::vector<std::pair<int, Side>>;
-
-Expected<ScriptedAnswers> read_script(const std::filesystem::path& path) {
-  const Expected<std::string> text = scene::read_scene_text(path);
-  if (!text) return fail(text.error().what, "a file of answers, A or B, a line each", path.string());
-  ScriptedAnswers out;
-  std::istringstream lines(*text);
-  int number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    const std::size_t first = line.find_first_not_of(" \t\r");
-    if (first == std::string::npos || line[first] == '#') continue;
-    const std::string word = line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
-    if (word != "A" && word != "B" && word != "a" && word != "b")
-      return fail(scene::in_quotes(word) + " is no answer", "A or B", path.string(), number);
-    out.emplace_back(number, word == "A" || word == "a" ? Side::a : Side::b);
-  }
-  return out;
-}
-
 }  // namespace
 
 Expected<PerceptionSettings> AnglePerceptionOptions::settings() const {
@@ -270,67 +218,6 @@ Expected<ordered_json> run_angle_perception(const AnglePerceptionOptions& option
   if (!ok) return fail(std::move(ok.error()));
   beside_the_thesis(folder, rows);
   return rows;
-}
-
-Expected<ordered_json> write_answers(const PerceptionSettings& settings, const std::vector<AnsweredTrial>& answered,
-                                     const StudyFolder& folder) {
-  if (answered.empty()) return fail("not a trial was answered");
-  const std::vector<AnswerCount> counts = counts_of(answered);
-  const std::optional<PsychometricFit> fit = fit_psychometric(counts);
-  const std::vector<DifferenceClass> classes = classify(counts, settings.classes);
-  ordered_json rows = ordered_json::array();
-  for (const DifferenceClass& one : classes) rows.push_back(class_row("answers", one));
-  for (const DifferenceClass& one : thesis_classes()) rows.push_back(class_row("thesis", one));
-  ordered_json trials = ordered_json::array();
-  for (const AnsweredTrial& one : answered) trials.push_back(trial_json(one));
-  const std::optional<double> from = told_from(classes);
-  folder.note(fmt::format(
-      "{} trials by the rule '{}', seed {}. {}", answered.size(), settings.rule.name, settings.seed,
-      from ? fmt::format("Told apart from {} degrees on.", *from) : "No class of differences is told apart."));
-  folder.compare("angle-perception.threshold", or_null(from),
-                 "Of these answers: other hands, another device and plate than the thesis's.");
-  Expected<void> ok = folder.write_table("angle-perception", rows, "As Table 5.4 of the thesis, which stands below.");
-  if (ok)
-    ok = write_fit(folder,
-                   ordered_json::array({fit_row("answers", counts, fit),
-                                        fit_row("thesis", thesis_answers(), fit_psychometric(thesis_answers()))}));
-  if (ok) ok = folder.write_figure("angle-perception-answers", answers_chart("The answers", counts, fit));
-  if (ok) ok = folder.write_table("angle-perception-trials", trials);
-  if (!ok) return fail(std::move(ok.error()));
-  return rows;
-}
-
-Expected<ordered_json> run_scripted_answers(const AnglePerceptionOptions& options, const std::filesystem::path& answers,
-                                            const StudyFolder& folder, const Progress& progress) {
-  const Expected<PerceptionSettings> settings = options.settings();
-  if (!settings) return fail(settings.error());
-  const Expected<ScriptedAnswers> script = read_script(answers);
-  if (!script) return fail(script.error());
-  PerceptionExperiment experiment(*settings, settings->seed);
-  Expected<TrialLog> log = TrialLog::open(folder.path() / TrialLog::kName, *settings, settings->seed, experiment);
-  if (!log) return fail(std::move(log.error()));
-  const std::size_t before = experiment.answered().size();
-  for (std::size_t k = 0; k < script->size(); ++k) {
-    const auto& [line, side] = (*script)[k];
-    const auto wrong = [&, at = line](const std::string& what, const std::string& remedy) {
-      return fail(what, remedy, answers.string(), at);
-    };
-    if (k < before) {
-      if (experiment.answered()[k].answer == side) continue;
-      return wrong(fmt::format("trial {} was answered {} before", k + 1, letter_of(experiment.answered()[k].answer)),
-                   "--out names another folder");
-    }
-    if (experiment.current() == nullptr)
-      return wrong(fmt::format("the experiment has {} trials", experiment.answered().size()), "no more answers");
-    experiment.answer(side);
-    if (Expected<void> kept = log->append(experiment.answered().back(), 0.0); !kept)
-      return fail(std::move(kept.error()));
-  }
-  progress(1.0, fmt::format("{} answers", experiment.answered().size()));
-  if (experiment.current() != nullptr)
-    folder.note(fmt::format("The experiment is not at its end: {} of {} runs are done.", experiment.runs_done(),
-                            experiment.runs()));
-  return write_answers(*settings, experiment.answered(), folder);
 }
 
 }  // namespace rhexis::studies

@@ -1,7 +1,7 @@
 #pragma once
 
 /// Which crack angles a hand can tell apart (Table 5.4 of the thesis; docs/angle-perception.md): the thesis's counts
-/// under its own test, simulated observers under three rules, and the answers of people or scripts.
+/// under its own test, and simulated observers under three rules.
 
 #include <filesystem>
 #include <optional>
@@ -30,18 +30,6 @@ struct AnglePerceptionOptions {
 /// feel: a row a point, direction and difference) and the figures of all. Errors: an experiment or a plate that cannot
 /// be, thresholds that differences do not reach.
 Expected<nlohmann::ordered_json> run_angle_perception(const AnglePerceptionOptions& options, const StudyFolder& folder,
-                                                      const Progress& progress);
-
-/// The same tables of answers that were given: angle-perception (source "answers", then "thesis"),
-/// angle-perception-trials, angle-perception-fit. Errors: not an answer yet, a folder that cannot be written to.
-Expected<nlohmann::ordered_json> write_answers(const PerceptionSettings& settings,
-                                               const std::vector<AnsweredTrial>& answered, const StudyFolder& folder);
-
-/// A script answers: line n of `answers`, A or B, is the answer to trial n; what is blank or begins with # is none.
-/// Goes on where `folder` has the answers to the first trials already. Errors: as of TrialLog; another line, more
-/// answers than trials, one that differs from what was answered, each with its line.
-Expected<nlohmann::ordered_json> run_scripted_answers(const AnglePerceptionOptions& options,
-                                                      const std::filesystem::path& answers, const StudyFolder& folder,
                                                       const Progress& progress);
 
 }  // namespace rhexis::studies

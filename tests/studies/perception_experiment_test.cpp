@@ -88,9 +88,9 @@ TEST(SimulatedObserver, IsFoundOutByEachRule) {
 }
 
 /// An adaptive rule asks where the answers lead it, so that its intervals hold a little less than answers at fixed
-/// differences do (psychometric_test): 91% of 200 here.
+/// differences do (psychometric_test): 91% of 200.
 TEST(SimulatedObserver, IntervalsHoldTheThreshold) {
-  const int observers = 200;
+  const int observers = 100;
   PerceptionSettings settings = thesis();
   settings.rule.name = "quest";
   settings.repeats = 1;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "studies/angle_perception.h"
+#include "studies/perception_answers.h"
 #include "studies/perception_log.h"
 #include "studies/perception_plate.h"
 #include "tests/support/run_command.h"
@@ -163,7 +164,7 @@ TEST(ScriptedAnswers, AreSavedAnalysedAndGoneOnWith) {
     text += std::string(1, letter_of(one.answer)) + "\n";
   const auto run = [&](const std::string& answers) {
     std::ofstream(path / "answers.txt") << answers;
-    return run_scripted_answers(options, path / "answers.txt", *StudyFolder::open(path / "out"), go_on);
+    return run_scripted_answers(*options.settings(), path / "answers.txt", *StudyFolder::open(path / "out"), go_on);
   };
   ASSERT_TRUE(run(text.substr(0, 10 + 2 * 23)));
   const Expected<ordered_json> rows = run(text);
