@@ -67,11 +67,18 @@ std::vector<wire::SharedMessage> frames() {
   wire::SetValueT set_value;
   set_value.key = "material.young";
   set_value.value = "2e6";
+  wire::TrialT trial;
+  trial.title = "Angles";
+  trial.point = std::make_unique<wire::Vec3>(0.1, 0.0, 0.0);
+  trial.direction = std::make_unique<wire::Vec3>(-1.0, 0.0, 0.0);
+  wire::AnswerT answer;
+  answer.same = wire::Presented::b;
   wire::GraspT grasp;
   grasp.weights = std::make_unique<wire::Vec3>(0.5, 0.25, 0.25);
   return {wire::encode(std::move(hello)),     wire::encode(std::move(body)),   wire::encode(std::move(edit)),
           wire::encode(std::move(state)),     wire::encode(std::move(notice)), wire::encode(std::move(timeline)),
-          wire::encode(std::move(set_value)), wire::encode(std::move(grasp)),  wire::encode(wire::ResetT())};
+          wire::encode(std::move(set_value)), wire::encode(std::move(grasp)),  wire::encode(wire::ResetT()),
+          wire::encode(std::move(trial)),     wire::encode(std::move(answer)), wire::encode(wire::FeelT())};
 }
 
 fuzz::RecordingParts recording() {
@@ -88,7 +95,7 @@ fuzz::RecordingParts recording() {
   add(parts.scenes, 0,
       session::bytes_of({.file = "a.toml", .text = "title = \"A\"", .overrides = {"a.b=1"}, .mesh = mesh}));
   for (const wire::SharedMessage& frame : frames()) {
-    const bool is_command = frame->kind > wire::Payload::Pong;
+    const bool is_command = frame->kind > wire::Payload::Pong && frame->kind != wire::Payload::Trial;
     add(is_command ? parts.commands : parts.frames, static_cast<std::uint64_t>(frame->kind), frame->bytes);
   }
   parts.flushes = {{.scenes = 1, .bytes = parts.scenes[0].size},

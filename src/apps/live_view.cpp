@@ -77,23 +77,34 @@ std::shared_ptr<LiveViewOptions> add_live_view_options(CLI::App& command) {
   return options;
 }
 
+Expected<std::unique_ptr<server::Server>> listen(const LiveViewOptions& options, session::CommandTarget& target,
+                                                 Relay& relay) {
+  const Expected<server::ServerSettings> settings = settings_of(options);
+  if (!settings) return fail(settings.error());
+  Expected<std::unique_ptr<server::Server>> made = server::Server::listen(*settings, target);
+  if (!made) return made;
+  relay.set(**made);
+  (*made)->start();
+  return made;
+}
+
+void show_page(const LiveViewOptions& options, const server::Server& server) {
+  if (!options.no_browser) open_browser(server.url());
+}
+
 int serve(const LiveViewOptions& options, const Common& common, session::CommandTarget& target, Relay& relay,
           const std::function<Expected<void>()>& start, const std::function<void()>& stop) {
-  const Expected<server::ServerSettings> settings = settings_of(options);
-  if (!settings) return report(settings.error());
-  Expected<std::unique_ptr<server::Server>> made = server::Server::listen(*settings, target);
+  const Interrupt interrupt;
+  Expected<std::unique_ptr<server::Server>> made = listen(options, target, relay);
   if (!made) return report(made.error());
   server::Server& server = **made;
-  relay.set(server);
-  const Interrupt interrupt;
-  server.start();
   if (const Expected<void> begun = start(); !begun) {
     server.stop();
     return report(begun.error());
   }
   say(common, "page      {}\nCtrl-C ends it\n", server.url());
   std::fflush(stdout);
-  if (!options.no_browser) open_browser(server.url());
+  show_page(options, server);
   while (!interrupt.asked()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   stop();
   server.stop();

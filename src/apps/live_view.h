@@ -33,6 +33,12 @@ class Relay final : public session::FrameSink {
   session::FrameSink* to_ = nullptr;
 };
 
+/// A server for the page that runs, and hears what goes through `relay`. Errors: of the options; a port that is taken.
+[[nodiscard]] Expected<std::unique_ptr<server::Server>> listen(const LiveViewOptions& options,
+                                                               session::CommandTarget& target, Relay& relay);
+/// In a browser, unless the options say not to.
+void show_page(const LiveViewOptions& options, const server::Server& server);
+
 /// Listens, starts, says where, waits for Ctrl-C, stops. `start`: the stream begins.
 int serve(const LiveViewOptions& options, const Common& common, session::CommandTarget& target, Relay& relay,
           const std::function<Expected<void>()>& start, const std::function<void()>& stop);

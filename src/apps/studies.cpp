@@ -4,12 +4,15 @@
 
 #include <fmt/format.h>
 
+#include "apps/perception_page.h"
+#include "studies/angle_perception.h"
 #include "studies/beta_sweep.h"
 #include "studies/identification.h"
 #include "studies/iteration_timing.h"
 #include "studies/live_models.h"
 #include "studies/live_study.h"
 #include "studies/model_comparison.h"
+#include "studies/perception_answers.h"
 #include "studies/reaction_error.h"
 #include "studies/restructuring.h"
 #include "studies/stability_map.h"
@@ -96,6 +99,42 @@ StudyFunction reaction_error_options(CLI::App& command) {
   return runs_with(options, studies::run_reaction_error);
 }
 
+StudyFunction angle_perception_options(CLI::App& command) {
+  auto options = std::make_shared<studies::AnglePerceptionOptions>();
+  auto answers = std::make_shared<std::string>();
+  command
+      .add_option("--experiment", options->experiment, "points, directions and rule; those of the thesis unless given")
+      ->type_name("FILE");
+  command.add_option("--seed", options->seed, "of the order of trials, in place of the experiment's")->type_name("N");
+  command.add_option("--answers", *answers, "of a script, A or B a line, in place of simulated observers")
+      ->type_name("FILE");
+  command.add_option("--observers", options->observers, "that are simulated, of each threshold and rule")
+      ->type_name("COUNT");
+  command.add_option("--threshold", options->thresholds, "of simulated observers; 8, 15 and 30 unless given")
+      ->type_name("DEGREES")
+      ->expected(-1);
+  auto with = std::make_shared<std::string>("simulated");
+  command.add_option("--with", *with, "simulated observers, or a person at the page; simulated unless given")
+      ->type_name("WHOM")
+      ->check(CLI::IsMember({"simulated", "person"}));
+  auto person = std::make_shared<PersonOptions>();
+  command.add_option("--device", person->device, "of the person: a name from `rhexis devices`; pointer unless given")
+      ->type_name("NAME");
+  command.add_option("--motion-scale", person->motion_scale, "m in the scene for a metre of the device")
+      ->type_name("FACTOR");
+  command
+      .add_option("--force-scale", person->force_scale, "N at the device for a newton in the scene; 0.1 unless given")
+      ->type_name("FACTOR");
+  person->view = add_live_view_options(command);
+  return [=](const studies::StudyFolder& folder, const studies::Progress& progress) {
+    if (answers->empty() && *with != "person") return studies::run_angle_perception(*options, folder, progress);
+    const Expected<studies::PerceptionSettings> settings = options->settings();
+    if (!settings) return Expected<nlohmann::ordered_json>(fail(settings.error()));
+    return answers->empty() ? run_with_person(*settings, *person, folder, progress)
+                            : studies::run_scripted_answers(*settings, *answers, folder, progress);
+  };
+}
+
 StudyFunction haptic_stability_options(CLI::App& command) {
   auto options = std::make_shared<studies::StabilityOptions>();
   command.add_option("--stiffness", options->stiffness, "N/m, of the coupling")->type_name("N/M")->expected(-1);
@@ -179,6 +218,11 @@ std::span<const Study> all_studies() {
        {"advances", "way", "patterns", "better", "better_untied", "mean", "deviation", "mean_relative", "thesis_better",
         "thesis_mean", "thesis_deviation"},
        reaction_error_options},
+      {"angle-perception",
+       "Which crack angles a hand can tell apart, and which rule finds that out",
+       "--answers answers.txt",
+       {"source", "from", "to", "trials", "right", "critical", "told"},
+       angle_perception_options},
       {"haptic-stability",
        "Which couplings an emulated haptic device bears",
        "--delay 0 1 2 --stiffness 500 1000 2000",

@@ -69,19 +69,21 @@ Expected<void> read_keys(const Table& table, SectionValues& values) {
 
 class Validator {
  public:
+  explicit Validator(std::span<const Section> sections) : sections_(sections) {}
+
   Expected<Values> run(const Node& root) {
     values_.file = root.place;
-    for (const Section& section : scene_sections()) values_.sections[section.name];
+    for (const Section& section : sections_) values_.sections[section.name];
     Table root_keys;
     for (const Entry& entry : *root.as<Table>())
-      if (scene_sections().front().find(entry.key) != nullptr) root_keys.push_back(entry);
+      if (sections_.front().find(entry.key) != nullptr) root_keys.push_back(entry);
     if (Expected<void> read = read_one("", "", root_keys, root.place, true); !read)
       return fail(std::move(read.error()));
     for (const Entry& entry : *root.as<Table>()) {
-      if (scene_sections().front().find(entry.key) != nullptr) continue;
+      if (sections_.front().find(entry.key) != nullptr) continue;
       if (Expected<void> read = read_section(entry); !read) return fail(std::move(read.error()));
     }
-    for (const Section& section : scene_sections()) {
+    for (const Section& section : sections_) {
       if (section.form != SectionForm::single || !values_.sections[section.name].empty()) continue;
       if (section.required) return root.place.fail(header_of(section) + " is missing", section_hint(section));
       if (Expected<void> read = read_one(section.name, section.name, {}, root.place, false); !read)
@@ -98,7 +100,7 @@ class Validator {
   }
 
   Expected<void> read_section(const Entry& entry) {
-    const Section* section = entry.key.empty() ? nullptr : find_section(entry.key);
+    const Section* section = entry.key.empty() ? nullptr : find(entry.key);
     if (section == nullptr) return unknown(entry);
     const Place& place = entry.node.place;
     const Table* table = entry.node.as<Table>();
@@ -139,7 +141,7 @@ class Validator {
 
   Expected<void> read_one(const std::string& section, std::string path, const Table& table, const Place& place,
                           bool given, std::string name = {}) {
-    SectionValues values{.section = section.empty() ? &scene_sections().front() : find_section(section),
+    SectionValues values{.section = section.empty() ? &sections_.front() : find(section),
                          .name = std::move(name),
                          .path = std::move(path),
                          .place = place,
@@ -155,24 +157,31 @@ class Validator {
                                  "write " + header_of(section));
   }
 
-  static tl::unexpected<Error> unknown(const Entry& entry) {
+  tl::unexpected<Error> unknown(const Entry& entry) const {
     std::vector<std::string> known;
-    for (const Section& section : scene_sections())
+    for (const Section& section : sections_)
       if (section.form != SectionForm::root) known.push_back(section.name);
     const bool is_section = entry.node.as<Table>() != nullptr || entry.node.as<Array>() != nullptr;
     if (!is_section) {
-      const std::vector<std::string> keys = names_of(scene_sections().front().keys);
+      const std::vector<std::string> keys = names_of(sections_.front().keys);
       known.insert(known.begin(), keys.begin(), keys.end());
     }
     return entry.node.place.fail((is_section ? "unknown section " : "unknown key ") + in_quotes(entry.key),
                                  suggest(entry.key, known));
   }
 
+  [[nodiscard]] const Section* find(std::string_view name) const {
+    const auto found =
+        std::find_if(sections_.begin(), sections_.end(), [&](const Section& s) { return s.name == name; });
+    return found == sections_.end() ? nullptr : &*found;
+  }
+
+  std::span<const Section> sections_;
   Values values_;
 };
 
 }  // namespace
 
-Expected<Values> validate(const Node& root) { return Validator().run(root); }
+Expected<Values> validate(const Node& root, std::span<const Section> sections) { return Validator(sections).run(root); }
 
 }  // namespace rhexis::scene

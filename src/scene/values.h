@@ -86,8 +86,9 @@ struct Values {
   }
 };
 
-/// Holds a tree against the declaration. The first mistake in the order of the document is the error.
-[[nodiscard]] Expected<Values> validate(const Node& root);
+/// Holds a tree against a declaration, whose first section is the root: that of a scene, or of another file of the same
+/// form. The first mistake in the order of the document is the error.
+[[nodiscard]] Expected<Values> validate(const Node& root, std::span<const Section> sections = scene_sections());
 /// Of a scene's text with the arguments of `--set` applied in order. `file` stands in the errors.
 [[nodiscard]] Expected<Values> parse_values(std::string_view text, const std::string& file,
                                             const std::vector<std::string>& overrides);

@@ -44,6 +44,8 @@ Right right_to_send(Payload kind) {
     case Payload::ShowField:
     case Payload::Record:
     case Payload::Seek:
+    case Payload::Feel:
+    case Payload::Answer:
     case Payload::Play: return Right::hand;
     default: return Right::nobody;  // and what a newer schema, or nonsense, may have there
   }

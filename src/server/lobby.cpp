@@ -25,6 +25,7 @@ void Lobby::join(Viewer& viewer) {
   send_roles();
   for (const wire::SharedMessage& message : body_) viewer.send(message);
   if (timeline_ != nullptr) viewer.send(timeline_);
+  if (trial_ != nullptr) viewer.send(trial_);
   if (state_ != nullptr) viewer.send(state_);
 }
 
@@ -46,6 +47,7 @@ void Lobby::take(const wire::SharedMessage& message) {
       state_ = nullptr;
       break;
     case wire::Payload::Timeline: timeline_ = message; break;
+    case wire::Payload::Trial: trial_ = message; break;
     case wire::Payload::State: state_ = message; break;
     default: break;
   }

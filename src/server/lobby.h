@@ -50,6 +50,7 @@ class Lobby {
   std::vector<Viewer*> askers_;            ///< for the hand, in the order of their asking
   std::vector<wire::SharedMessage> body_;  ///< the last Body and all Edits since
   wire::SharedMessage timeline_;           ///< the last, null before there is one
+  wire::SharedMessage trial_;              ///< null: no experiment
   wire::SharedMessage state_;              ///< the last, null where it is of another topology than the last of body_
 };
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "haptics/hand_state.h"
@@ -50,6 +51,9 @@ class Interaction {
   /// sense, or is wrong, is said, and all stays as it was.
   void carry_out(const wire::PayloadUnion& command);
 
+  /// From now on every Grasp is one of this point (m, reference), wherever the client has seen it.
+  void hold_only_at(const Vec3& point) { only_point_ = point; }
+
   /// One step of the physics: take the hand's motion, follow the script, move the body by the hand and let it tear
   /// once, publish. While it tears the hand counts as standing still: so each advance has a law and a step of its own,
   /// and the cracks are those of one long tick. `fresh`: `hand` is another one than that of the last step.
@@ -90,6 +94,7 @@ class Interaction {
   Script script_;
   response::ForceSnapshot law_;
 
+  std::optional<Vec3> only_point_;  ///< m
   std::uint64_t steps_ = 0;
   std::uint64_t now_ = 0;        ///< tick of the haptic loop
   std::uint64_t run_until_ = 0;  ///< while paused: the clock runs until this tick

@@ -58,6 +58,10 @@ void Interaction::carry_out(const wire::PayloadUnion& command) {
 
 /// Where the client has seen the point: the surface may have torn since, and then the nearest point is held.
 void Interaction::grasp(const wire::GraspT& command) {
+  if (only_point_) {
+    hold(*only_point_, response::ContactMode::hold);
+    return;
+  }
   const SurfaceTracker& surface = body_->surface;
   if (command.face >= surface.faces().size() || surface.is_empty(command.face) || !command.weights ||
       !is_point(*command.weights)) {

@@ -17,14 +17,22 @@ wire::SharedMessage make_hello(const LiveSettings& settings) {
   hello.version = settings.version;
   hello.scenes = settings.scenes;
   hello.devices = settings.devices;
-  hello.declarations = scene::live_keys_json();
+  hello.declarations = settings.task == nullptr ? scene::live_keys_json() : "[]";
   return wire::encode(std::move(hello));
+}
+
+Expected<std::unique_ptr<OpenBody>> open_scene(const LiveSettings& settings) {
+  if (settings.task != nullptr) return settings.task->open();
+  Expected<SceneChoice> choice = read_scene_choice(settings.scene, settings.overrides);
+  if (!choice) return fail(std::move(choice.error()));
+  return open_body(std::move(*choice));
 }
 
 }  // namespace
 
 Expected<std::unique_ptr<LiveSession>> LiveSession::open(LiveSettings settings, FrameSink& sink) {
-  if (std::find(settings.scenes.begin(), settings.scenes.end(), settings.scene) == settings.scenes.end())
+  if (settings.task == nullptr &&
+      std::find(settings.scenes.begin(), settings.scenes.end(), settings.scene) == settings.scenes.end())
     settings.scenes.insert(settings.scenes.begin(), settings.scene);
   Holder holder{.script = std::make_shared<ScriptedHand>(), .device = nullptr, .tick = {}};
   Expected<std::unique_ptr<haptics::Device>> device =
@@ -35,13 +43,12 @@ Expected<std::unique_ptr<LiveSession>> LiveSession::open(LiveSettings settings, 
   holder.tick.motion_scale = settings.motion_scale;
   holder.tick.force_scale = settings.force_scale;
   if (Expected<void> good = haptics::check_settings(holder.tick); !good) return fail(std::move(good.error()));
-  Expected<SceneChoice> choice = read_scene_choice(settings.scene, settings.overrides);
-  if (!choice) return fail(std::move(choice.error()));
-  Expected<std::unique_ptr<OpenBody>> body = open_body(std::move(*choice));
+  Expected<std::unique_ptr<OpenBody>> body = open_scene(settings);
   if (!body) return fail(std::move(body.error()));
   if (const haptics::DeviceTraits& traits = holder.device->traits();
       traits.follows_script && (*body)->problem.pulls.empty())
-    return fail(fmt::format("there is nothing for device '{}' to do", traits.name), "add a [[pull]]", settings.scene);
+    return fail(fmt::format("there is nothing for device '{}' to do", traits.name),
+                settings.task != nullptr ? "a device that somebody holds" : "add a [[pull]]", (*body)->scene.file);
   return std::unique_ptr<LiveSession>(new LiveSession(std::move(settings), sink, std::move(holder), std::move(*body)));
 }
 
@@ -110,10 +117,11 @@ void LiveSession::step() {
   const Stopwatch watch;
   opened_ = false;
   take_commands();
+  if (settings_.task != nullptr) bind_hand();
   const bool fresh = loop_->hands.take(hand_);
   const StepOutcome outcome = interaction_->step(hand_, fresh);
   steps_ = outcome.number;
-  loop_->laws.publish(interaction_->law());
+  loop_->laws.publish(felt_law());
   holder_.script->order(interaction_->orders());
   take_trace();
   if (recorder_)
@@ -150,6 +158,7 @@ void LiveSession::take_commands() {
 }
 
 void LiveSession::carry_out(const wire::PayloadUnion& command) {
+  if (settings_.task != nullptr) return carry_out_of_task(command);
   switch (command.type) {
     case wire::Payload::ShowField:
       frames_.show(command.AsShowField()->field);
@@ -196,6 +205,8 @@ void LiveSession::send_state() {
   const Clock::time_point begin = Clock::now();
   wire::StateT state = frames_.state(*interaction_, hand_);
   state.recording = recorder_ != nullptr;
+  if (settings_.task != nullptr)  // of the plate that is felt, which is not the one that is seen
+    state.body_force = std::make_unique<wire::Vec3>(hand_.body_force[0], hand_.body_force[1], hand_.body_force[2]);
   state.rates = std::make_unique<wire::RatesT>(rates_.latest());
   state.trace_tick = trace_tick_;
   state.trace.swap(trace_);
@@ -208,7 +219,7 @@ void LiveSession::send_state() {
 void LiveSession::has_body(bool anew) {
   opened_ = true;
   send_body();
-  if (!anew) return;
+  if (!anew || settings_.task != nullptr) return;
   if (holder_.device->traits().follows_script) {
     wire::PayloadUnion begin;
     wire::ScriptT on;

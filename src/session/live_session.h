@@ -70,6 +70,11 @@ class LiveSession final : public CommandTarget, public InteractionListener {
   void take_commands();
   void carry_out(const wire::PayloadUnion& command);
   bool is_for_page(const wire::PayloadUnion& command);
+  void carry_out_of_task(const wire::PayloadUnion& command);
+  void bind_hand();
+  void send_trial();
+  /// What the haptic loop is to feel: the body's law, or what a task puts in its place.
+  [[nodiscard]] response::ForceSnapshot felt_law() const;
   void take_trace();
   void send_state();
   void watch_recording();  ///< ends one that has come to trouble
@@ -107,6 +112,7 @@ class LiveSession final : public CommandTarget, public InteractionListener {
   FrameMaker frames_;
   std::uint64_t steps_ = 0;
   haptics::HandState hand_;
+  bool is_bound_ = false;  ///< the hand, to what the task shows
   LiveRates rates_;
   std::vector<float> trace_;  ///< N, 3 a tick since the last State
   std::uint64_t trace_tick_ = 0;

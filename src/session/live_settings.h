@@ -10,6 +10,7 @@
 
 #include "haptics/device.h"
 #include "haptics/hand_path.h"
+#include "session/live_task.h"
 
 namespace rhexis::session {
 
@@ -17,6 +18,7 @@ namespace rhexis::session {
 using MakeDevice = std::function<Expected<std::unique_ptr<haptics::Device>>(std::shared_ptr<haptics::HandPath> script)>;
 
 struct LiveSettings {
+  std::shared_ptr<LiveTask> task;      ///< which opens a body of its own, and leaves `scene` to nobody; null: free play
   std::string scene;                   ///< file, to begin with
   std::vector<std::string> overrides;  ///< "key=value", of that scene
   std::vector<std::string> scenes;     ///< files that a client may open

@@ -13,37 +13,18 @@
 #include "haptics/device_list.h"
 #include "server/server.h"
 #include "session/live_session.h"
+#include "studies/study_plate.h"
 
 namespace rhexis::studies {
 namespace {
 
 using std::chrono::milliseconds;
 
-/// The plate of study_plate.h, as a scene that a session can open.
-constexpr std::string_view kScene = R"(title = "The plate of the study `live`"
-[mesh]
-generate = "plate"
-size = [0.24, 0.24, 0.01]
-nodes = {}
-[material]
-density = 1000.0
-young = 1.0e6
-poisson = 0.4
-[model]
-kind = "linear"
-[[support]]
-set = "+x"
-x = 0.0
-y = 0.0
-z = 0.0
-[fracture]
+/// Beside the plate of study_plate.h: what lets it tear.
+constexpr std::string_view kTearing = R"([fracture]
 criterion = "maximum-principal"
 strength = 0.4e6
 advance_threshold = 0.2e6
-[[crack]]
-from = [0.12, 0.0, 0.0]
-to = [0.12, 0.06, 0.0]
-through = [0.0, 0.0, 1.0]
 [[pull]]
 at = [0.10, 0.0, 0.005]
 by = [-0.12, 0.0, 0.0]
@@ -119,7 +100,10 @@ Expected<void> open_session(const LiveOptions& options, const std::filesystem::p
     show.probe = probed.get();
     return probed;
   };
-  if (Expected<void> done = write_atomically(settings.scene, fmt::format(kScene, options.nodes)); !done) return done;
+  if (Expected<void> done = write_atomically(
+          settings.scene, plate_scene("The plate of the study `live`", options.nodes).append(kTearing));
+      !done)
+    return done;
   Expected<std::unique_ptr<session::LiveSession>> opened = session::LiveSession::open(std::move(settings), show.log);
   if (!opened) return fail(std::move(opened.error()));
   show.session = std::move(*opened);

@@ -4,6 +4,31 @@
 #include "mesh/generate.h"
 
 namespace rhexis::studies {
+namespace {
+
+constexpr std::string_view kScene = R"(title = "{}"
+[mesh]
+generate = "plate"
+size = [0.24, 0.24, 0.01]
+nodes = {}
+[material]
+density = 1000.0
+young = 1.0e6
+poisson = 0.4
+[model]
+kind = "linear"
+[[support]]
+set = "+x"
+x = 0.0
+y = 0.0
+z = 0.0
+[[crack]]
+from = [0.12, 0.0, 0.0]
+to = [0.12, 0.06, 0.0]
+through = [0.0, 0.0, 1.0]
+)";
+
+}  // namespace
 
 Expected<StudyPlate> make_study_plate(int nodes) {
   Expected<mesh::TetMesh> mesh = mesh::make_plate({.size = Vec3(0.24, 0.24, 0.01)}, nodes);
@@ -23,6 +48,8 @@ Expected<StudyPlate> make_study_plate(int nodes) {
   plate.by = Vec3(-0.12, 0.0, 0.0);
   return plate;
 }
+
+std::string plate_scene(std::string_view title, int nodes) { return fmt::format(kScene, title, nodes); }
 
 Expected<std::unique_ptr<session::TearSession>> start_tearing(const StudyPlate& plate) {
   Expected<std::unique_ptr<session::TearSession>> session =

@@ -4,6 +4,8 @@
 /// from the middle of y = 0 to +y, held at +x and pulled at the corner of the crack on the other side, as in
 /// scenes/plate-tear.toml.
 
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -22,6 +24,9 @@ struct StudyPlate {
 
 /// Errors: a number of nodes that no plate can have.
 [[nodiscard]] Expected<StudyPlate> make_study_plate(int nodes);
+
+/// The same plate with its crack as a scene that a session can open; it does not tear by itself, and nobody pulls.
+[[nodiscard]] std::string plate_scene(std::string_view title, int nodes);
 
 /// A session with the plate, held at its point. Errors as of TearSession::make.
 [[nodiscard]] Expected<std::unique_ptr<session::TearSession>> start_tearing(const StudyPlate& plate);

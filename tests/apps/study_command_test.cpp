@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/support/run_command.h"
@@ -58,6 +61,24 @@ TEST(StudyCommand, MeasuresALiveSession) {
   EXPECT_TRUE(std::filesystem::exists(folder / "live-ticks.svg"));
   EXPECT_EQ(test::run_rhexis("study live --seconds 1 --nodes 200 --device pointer" + out).code, 2);
   EXPECT_EQ(test::run_rhexis("study live --seconds 1 --nodes 3" + out).code, 2);
+}
+
+TEST(StudyCommand, TakesTheAnswersOfAScript) {
+  const std::filesystem::path folder = test::fresh_folder("angles");
+  const std::string command = "study angle-perception --out '" + (folder / "out").string() + "' --answers '";
+  std::ofstream(folder / "answers.txt") << "A\nb\nA\n";
+  const test::Ran ran = test::run_rhexis(command + (folder / "answers.txt").string() + "'");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.out, HasSubstr("critical"));
+  const std::string kept = test::slurp(folder / "out/trials.jsonl");
+  EXPECT_EQ(std::count(kept.begin(), kept.end(), '\n'), 4) << "a line on what they answer, and one each";
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/report.html"));
+  std::ofstream(folder / "wrong.txt") << "A\n\nC\n";
+  const test::Ran wrong = test::run_rhexis(command + (folder / "wrong.txt").string() + "'");
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("wrong.txt:3: 'C' is no answer (A or B)"));
+  EXPECT_EQ(test::run_rhexis("study angle-perception --experiment nowhere.toml").code, 2);
+  EXPECT_EQ(test::run_rhexis("study angle-perception --with people").code, 2);
 }
 
 TEST(StudyCommand, TheReportSaysHowItWasMade) {

@@ -48,10 +48,13 @@ TEST(ClientFrame, EveryKindIsSomebodysToSend) {
   int of_clients = 0;
   for (int kind = 0; kind < 256; ++kind)
     of_clients += right_to_send(static_cast<wire::Payload>(kind)) == Right::nobody ? 0 : 1;
-  EXPECT_EQ(of_clients, static_cast<int>(wire::Payload::MAX) - static_cast<int>(wire::Payload::Pong));
+  // Behind Pong, but for Trial, which came later.
+  EXPECT_EQ(of_clients, static_cast<int>(wire::Payload::MAX) - static_cast<int>(wire::Payload::Pong) - 1);
+  EXPECT_EQ(right_to_send(wire::Payload::Trial), Right::nobody);
   EXPECT_EQ(right_to_send(wire::Payload::Pong), Right::nobody);
   EXPECT_EQ(right_to_send(wire::Payload::TakeHand), Right::anybody);
-  EXPECT_EQ(right_to_send(wire::Payload::Grasp), Right::hand);
+  for (const wire::Payload kind : {wire::Payload::Grasp, wire::Payload::Feel, wire::Payload::Answer})
+    EXPECT_EQ(right_to_send(kind), Right::hand);
 }
 
 }  // namespace

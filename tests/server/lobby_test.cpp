@@ -63,6 +63,17 @@ TEST_F(LobbyCase, WhoComesInTheMiddleHearsTheLastBodyAndAllEditsSinceThenTheStat
   EXPECT_EQ(b.kinds().back(), Payload::Edit) << "the state that was of an older topology is of no use";
 }
 
+TEST_F(LobbyCase, WhoComesHearsOfTheTrialThatIsOn) {
+  lobby.take(wire::encode(wire::BodyT{}));
+  lobby.take(wire::encode(wire::TrialT{}));
+  wire::TrialT second;
+  second.number = 2;
+  lobby.take(wire::encode(second));
+  lobby.join(a);
+  ASSERT_EQ(a.kinds().back(), Payload::Trial);
+  EXPECT_EQ((*wire::decode(a.heard.back()->bytes))->payload.AsTrial()->number, 2U);
+}
+
 TEST_F(LobbyCase, TheFirstHasTheHandAndItsCommandsAloneAreCarriedOut) {
   lobby.join(a);
   lobby.join(b);

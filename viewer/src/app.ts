@@ -15,6 +15,7 @@ import { StatusBar } from "./panel/status_bar";
 import { Theme } from "./panel/theme";
 import { TimelineBar } from "./panel/timeline_bar";
 import { Transport } from "./panel/transport";
+import { TrialPanel } from "./panel/trial_panel";
 import { describe, describeWait, kFirstLink, liveAddress, type Link } from "./protocol/connection";
 import type { Command, ServerFrame } from "./protocol/messages";
 import { LiveSocket, type Listener } from "./protocol/socket";
@@ -25,10 +26,12 @@ import { exposeDebugHandle } from "./debug";
 import { Shortcuts } from "./shortcuts";
 import { kDark, kLight } from "./view/palette";
 import { Stage } from "./view/stage";
-import { Level } from "./wire/rhexis_generated";
+import { Level, Presented } from "./wire/rhexis_generated";
 
 /** ms between two looks at what needs no frame to change: the count down to the next attempt, the replay's clock. */
 const kTickEvery = 250;
+
+const kPresented: Readonly<Record<Presented, string>> = { [Presented.sample]: "the sample", [Presented.a]: "A", [Presented.b]: "B" };
 
 /** The page: frames go into the store, what they changed is shown, what a person does becomes commands. */
 export class App implements Listener {
@@ -49,12 +52,14 @@ export class App implements Listener {
   private readonly loops = new LoopsPanel();
   private readonly transport = new Transport(this.send, () => this.store.state);
   private readonly timeline = new TimelineBar(this.send);
+  private readonly trial = new TrialPanel((command) => this.decide(command), () => this.store.trial);
   private readonly field = byId("field", HTMLSelectElement);
   private readonly hint = byId("hint", HTMLParagraphElement);
   private readonly keyboard = this.makeKeyboard();
   private readonly headset: Headset;
   private link: Link = kFirstLink;
   private pictures = 0;
+  private asked = ""; // of an experiment
   private isShowDue = false;
 
   constructor() {
@@ -89,7 +94,7 @@ export class App implements Listener {
     const before = this.link;
     this.link = link;
     if (before.kind === "open" && link.kind !== "open") {
-      this.tell({ level: Level.error, text: "Connection lost" });
+      if (!this.isOver) this.tell({ level: Level.error, text: "Connection lost" });
       this.grip.drop();
     }
     if (before.kind === "connecting" && before.wasOpen && link.kind === "open")
@@ -124,6 +129,9 @@ export class App implements Listener {
       case "state":
         if (store.state !== null) this.grip.hear(store.state);
         break;
+      case "trial":
+        this.meetTrial();
+        break;
       case "timeline":
         if (store.timeline !== null) this.timeline.hear(store.timeline);
         break;
@@ -142,6 +150,23 @@ export class App implements Listener {
     this.requestShow();
   }
 
+  /** An experiment that is over: the program ends with it, and is not missed. */
+  private get isOver(): boolean {
+    return this.store.trial?.finished ?? false;
+  }
+
+  /** Another plate is felt, or another trial: what was held is not, any more. */
+  private meetTrial(): void {
+    const { trial } = this.store;
+    if (trial === null) return;
+    this.transport.isHidden = true;
+    const asked = `${trial.number} ${trial.presented} ${trial.finished}`;
+    if (asked === this.asked) return;
+    this.asked = asked;
+    setText(byId("title", HTMLSpanElement), trial.title);
+    this.messages.say(trial.finished ? "The experiment is over" : `Trial ${trial.number}: ${kPresented[trial.presented]}`);
+  }
+
   // ---- what is shown
 
   /** Texts change at most once a picture, however many frames come. */
@@ -158,6 +183,7 @@ export class App implements Listener {
     const { store, stage } = this;
     const mayAct = this.link.kind === "open" && store.hasHand;
     this.force.show(store.state);
+    this.trial.show(mayAct);
     this.comparison.show(store.body, store.state, mayAct, store.hello?.replay ?? false);
     this.plot.show(store.trace, store.own, store.compared, store.advances.map((advance) => advance.time), store.body?.maxForce ?? 0);
     this.loops.show(store.state?.rates ?? null, this.socket.roundTrip);
@@ -180,6 +206,7 @@ export class App implements Listener {
     const detail = describeWait(this.link, (this.socket.nextAttempt - performance.now()) / 1000);
     // A page that has just been opened is not in trouble yet.
     const isLate = this.link.kind !== "connecting" || this.link.wasOpen || this.link.attempt > 0;
+    if (this.isOver) return this.messages.showTroubles([]);
     if (lost !== "" && isLate) this.messages.showTroubles([{ id: "link", level: Level.error, text: lost, detail }]);
     else this.messages.showTroubles(lost === "" ? found : []);
   }
@@ -188,6 +215,7 @@ export class App implements Listener {
     if (this.store.body === null) return "";
     if (this.store.hello?.replay) return "A recording. Drag to turn, wheel to come nearer";
     if (this.grip.isHolding || this.store.state?.held) return "";
+    if (this.store.trial !== null) return this.mayHold() ? "Drag the plate along the arrow" : "";
     return this.mayHold() ? "Drag the body to pull it. Space runs the script" : "Drag to turn, wheel to come nearer";
   }
 
@@ -217,6 +245,12 @@ export class App implements Listener {
     return this.link.kind === "open" && this.store.hasHand && !(this.store.hello?.replay ?? false) && this.store.state !== null;
   }
 
+  /** Of an experiment: what is held is let go of before another plate is felt. */
+  private decide(command: Command): void {
+    this.grip.letGo();
+    this.send(command);
+  }
+
   private loseGrip(wasHeld: boolean): void {
     this.canvas.classList.remove("holding");
     const text = wasHeld ? "The hand was let go" : "The point could not be held";
@@ -235,13 +269,18 @@ export class App implements Listener {
 
   private bindKeys(): void {
     const isReplay = (): boolean => this.store.hello?.replay ?? false;
-    const live = (act: () => void) => (): void => (isReplay() ? undefined : act());
+    const live = (act: () => void) => (): void => (isReplay() || this.store.trial !== null ? undefined : act());
     new Shortcuts({
-      " ": () => (isReplay() ? this.timeline.toggle() : this.transport.toggleScript()),
+      " ": () => (isReplay() ? this.timeline.toggle() : live(() => this.transport.toggleScript())()),
       r: live(() => this.send({ kind: "reset" })),
       u: live(() => this.send({ kind: "undo" })),
       p: live(() => this.transport.togglePause()),
       s: live(() => this.transport.stepOn()),
+      "1": () => this.trial.feel(Presented.sample),
+      "2": () => this.trial.feel(Presented.a),
+      "3": () => this.trial.feel(Presented.b),
+      a: () => this.trial.answer(Presented.a),
+      b: () => this.trial.answer(Presented.b),
     });
     this.canvas.addEventListener("keydown", (event) => {
       if (event.ctrlKey || event.metaKey) return;

@@ -1,7 +1,7 @@
 import type { Vec3 } from "./base/vec3";
 import { vectorAt } from "./base/vec3";
 import type { Link } from "./protocol/connection";
-import type { Body, Hello, Role, State, Timeline } from "./protocol/messages";
+import type { Body, Hello, Role, State, Timeline, Trial } from "./protocol/messages";
 import type { Store } from "./session/store";
 import type { Stage } from "./view/stage";
 
@@ -16,6 +16,7 @@ export interface DebugHandle {
   readonly body: Body | null;
   readonly state: State | null;
   readonly timeline: Timeline | null;
+  readonly trial: Trial | null;
   readonly frames: number;
   readonly surface: { readonly vertices: number; readonly faces: number; readonly topology: number };
   readonly advances: number;
@@ -64,6 +65,9 @@ export function exposeDebugHandle(store: Store, stage: Stage, link: () => Link, 
     },
     get timeline() {
       return store.timeline;
+    },
+    get trial() {
+      return store.trial;
     },
     get frames() {
       return store.frames;

@@ -65,6 +65,14 @@ describe("Frames of the program", () => {
       timeline: { duration: 9.5, time: 2, speed: 0.5, playing: true, marks: [1, 2.25] },
     });
     expect(decode(frameOf(wire.Payload.Recorded, new wire.RecordedT("x.h5", 12n, 3)))).toEqual({ kind: "recorded", recorded: { file: "x.h5", bytes: 12, seconds: 3 } });
+    const trial = new wire.TrialT("t", 3, 1, 12, wire.Presented.b, true, false, true, new wire.Vec3T(0.1, 0, 0.005), new wire.Vec3T(-1, 0, 0), true, false, "trials.jsonl");
+    expect(decode(frameOf(wire.Payload.Trial, trial))).toEqual({
+      kind: "trial",
+      trial: {
+        title: "t", number: 3, runsDone: 1, runs: 12, presented: wire.Presented.b, felt: { 0: true, 1: false, 2: true },
+        point: [0.1, 0, 0.005], direction: [-1, 0, 0], showsForce: true, finished: false, file: "trials.jsonl",
+      },
+    });
     expect(decode(frameOf(wire.Payload.Pong, new wire.PongT(8n)))).toEqual({ kind: "pong", number: 8 });
   });
 
@@ -86,6 +94,8 @@ describe("Commands", () => {
     expect(heard(encode({ kind: "seek", time: 3.25 })).payload).toMatchObject({ time: 3.25 });
     expect(heard(encode({ kind: "step", ticks: 10 })).payload).toMatchObject({ ticks: 10 });
     expect(heard(encode({ kind: "showField", field: wire.Field.mean_stress })).payload).toMatchObject({ field: wire.Field.mean_stress });
+    expect(heard(encode({ kind: "feel", presented: wire.Presented.b })).payload).toMatchObject({ presented: wire.Presented.b });
+    expect(heard(encode({ kind: "answer", same: wire.Presented.a })).payload).toMatchObject({ same: wire.Presented.a });
     expect(heard(encode({ kind: "ping", number: 5 })).payload).toMatchObject({ number: 5n });
   });
 

@@ -19,7 +19,7 @@ export async function freePort(): Promise<number> {
 /** Of recordings and whatever else a test leaves. */
 export const kScratch = mkdtempSync(join(tmpdir(), "rhexis-e2e-"));
 
-/** A running `rhexis play` or `rhexis replay`. */
+/** A running `rhexis play` or `rhexis replay`, or an experiment with a person. */
 export class Program {
   private output = "";
 
@@ -56,6 +56,12 @@ export class Program {
     return this.end("SIGINT");
   }
 
+  /** By itself. Its exit code. */
+  async ended(): Promise<number | null> {
+    if (this.child.exitCode !== null || this.child.signalCode !== null) return this.child.exitCode;
+    return new Promise((done) => this.child.once("exit", (code) => done(code)));
+  }
+
   /** As a crash does. */
   async kill(): Promise<void> {
     await this.end("SIGKILL");
@@ -63,7 +69,7 @@ export class Program {
 
   private async end(signal: NodeJS.Signals): Promise<number | null> {
     if (this.child.exitCode !== null || this.child.signalCode !== null) return this.child.exitCode;
-    const ended = new Promise<number | null>((done) => this.child.once("exit", (code) => done(code)));
+    const ended = this.ended();
     this.child.kill(signal);
     return ended;
   }

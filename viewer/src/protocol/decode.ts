@@ -2,7 +2,7 @@ import * as flatbuffers from "flatbuffers";
 
 import { kZero, type Vec3 } from "../base/vec3";
 import * as wire from "../wire/rhexis_generated";
-import type { Advance, Body, Edit, Front, Hello, Notice, Rates, Recorded, RecordUse, Role, ServerFrame, State, Timeline } from "./messages";
+import type { Advance, Body, Edit, Front, Hello, Notice, Rates, Recorded, RecordUse, Role, ServerFrame, State, Timeline, Trial } from "./messages";
 
 const kNoFloats = new Float32Array(0);
 const kNoIndices = new Uint32Array(0);
@@ -36,6 +36,8 @@ export function decode(bytes: Uint8Array): ServerFrame {
       return { kind: "timeline", timeline: readTimeline(frame.payload(new wire.Timeline()) as wire.Timeline) };
     case wire.Payload.Recorded:
       return { kind: "recorded", recorded: readRecorded(frame.payload(new wire.Recorded()) as wire.Recorded) };
+    case wire.Payload.Trial:
+      return { kind: "trial", trial: readTrial(frame.payload(new wire.Trial()) as wire.Trial) };
     case wire.Payload.Pong:
       return { kind: "pong", number: Number((frame.payload(new wire.Pong()) as wire.Pong).number()) };
     default:
@@ -190,4 +192,20 @@ function readTimeline(timeline: wire.Timeline): Timeline {
 
 function readRecorded(recorded: wire.Recorded): Recorded {
   return { file: text(recorded.file()), bytes: Number(recorded.bytes()), seconds: recorded.seconds() };
+}
+
+function readTrial(trial: wire.Trial): Trial {
+  return {
+    title: text(trial.title()),
+    number: trial.number(),
+    runsDone: trial.runsDone(),
+    runs: trial.runs(),
+    presented: trial.presented(),
+    felt: { [wire.Presented.sample]: trial.feltSample(), [wire.Presented.a]: trial.feltA(), [wire.Presented.b]: trial.feltB() },
+    point: vec3(trial.point()),
+    direction: vec3(trial.direction()),
+    showsForce: trial.showsForce(),
+    finished: trial.finished(),
+    file: text(trial.file()),
+  };
 }

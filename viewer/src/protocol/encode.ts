@@ -51,6 +51,10 @@ function payloadOf(command: Command): Payload {
       return [wire.Payload.Record, new wire.RecordT(command.on)];
     case "compare":
       return [wire.Payload.Compare, new wire.CompareT(command.on)];
+    case "feel":
+      return [wire.Payload.Feel, new wire.FeelT(command.presented)];
+    case "answer":
+      return [wire.Payload.Answer, new wire.AnswerT(command.same)];
     case "seek":
       return [wire.Payload.Seek, new wire.SeekT(command.time)];
     case "play":

@@ -1,5 +1,5 @@
 import type { Vec3 } from "../base/vec3";
-import type { Field, Level } from "../wire/rhexis_generated";
+import type { Field, Level, Presented } from "../wire/rhexis_generated";
 
 /**
  * The frames of schema/rhexis.fbs as the page knows them: plain data, nothing absent. Units and meaning stand in the
@@ -145,6 +145,21 @@ export interface Recorded {
   readonly seconds: number;
 }
 
+/** An experiment, where it stands. */
+export interface Trial {
+  readonly title: string;
+  readonly number: number;
+  readonly runsDone: number;
+  readonly runs: number;
+  readonly presented: Presented;
+  readonly felt: Readonly<Record<Presented, boolean>>;
+  readonly point: Vec3;
+  readonly direction: Vec3;
+  readonly showsForce: boolean;
+  readonly finished: boolean;
+  readonly file: string;
+}
+
 export type ServerFrame =
   | { readonly kind: "hello"; readonly hello: Hello }
   | { readonly kind: "role"; readonly role: Role }
@@ -154,6 +169,7 @@ export type ServerFrame =
   | { readonly kind: "notice"; readonly notice: Notice }
   | { readonly kind: "timeline"; readonly timeline: Timeline }
   | { readonly kind: "recorded"; readonly recorded: Recorded }
+  | { readonly kind: "trial"; readonly trial: Trial }
   | { readonly kind: "pong"; readonly number: number };
 
 export type Command =
@@ -165,6 +181,8 @@ export type Command =
   | { readonly kind: "setValue"; readonly key: string; readonly value: string }
   | { readonly kind: "openScene"; readonly file: string }
   | { readonly kind: "showField"; readonly field: Field }
+  | { readonly kind: "feel"; readonly presented: Presented }
+  | { readonly kind: "answer"; readonly same: Presented }
   | { readonly kind: "seek"; readonly time: number }
   | { readonly kind: "play"; readonly on: boolean; readonly speed: number }
   | { readonly kind: "ping"; readonly number: number };

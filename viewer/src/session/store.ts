@@ -1,5 +1,5 @@
 import { Surface } from "../body/surface";
-import type { Advance, Body, Hello, Recorded, Role, ServerFrame, State, Timeline } from "../protocol/messages";
+import type { Advance, Body, Hello, Recorded, Role, ServerFrame, State, Timeline, Trial } from "../protocol/messages";
 import { Level } from "../wire/rhexis_generated";
 import { ForceTrace } from "./trace";
 
@@ -10,7 +10,7 @@ export interface Event {
 }
 
 /** What a frame changed, so that what shows it is drawn anew and nothing else. */
-export type Change = "hello" | "role" | "body" | "edit" | "state" | "timeline" | "recorded" | "event" | "pong" | "none";
+export type Change = "hello" | "role" | "body" | "edit" | "state" | "timeline" | "trial" | "recorded" | "event" | "pong" | "none";
 
 /** Everything that the page knows of the interaction: what came over the wire, in the order in which it came. */
 export class Store {
@@ -20,6 +20,8 @@ export class Store {
   /** The last of the present body; null until there is one. */
   state: State | null = null;
   timeline: Timeline | null = null;
+  /** null: no experiment. */
+  trial: Trial | null = null;
   readonly surface = new Surface();
   readonly trace = new ForceTrace();
   /** Of the body itself, before the device's limit, and of the other response; while the two are compared. */
@@ -57,6 +59,9 @@ export class Store {
       case "timeline":
         this.timeline = frame.timeline;
         return "timeline";
+      case "trial":
+        this.trial = frame.trial;
+        return "trial";
       case "recorded":
         this.recordings = [frame.recorded, ...this.recordings];
         return "recorded";

@@ -23,6 +23,8 @@ export class Stage {
   private readonly camera = new THREE.PerspectiveCamera(kFieldOfView, 1, 0.01, 10);
   private readonly body = new BodyView();
   private readonly arrow = new ForceArrow();
+  /** Where an experiment has the body held and pulled. */
+  private readonly guide = new ForceArrow();
   private isDue = false;
   private epoch = -1;
   private size = 1; // m, diagonal of the body's box
@@ -39,7 +41,7 @@ export class Stage {
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     THREE.ColorManagement.enabled = false;
     this.camera.up.set(0, 0, 1);
-    this.room.add(this.body.group, this.marks.group, this.arrow.group);
+    this.room.add(this.body.group, this.marks.group, this.arrow.group, this.guide.group);
     this.scene.add(this.room);
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.resize();
@@ -60,6 +62,7 @@ export class Stage {
     this.body.paint(palette);
     this.marks.paint(palette);
     this.arrow.paint(palette.force);
+    this.guide.paint(palette.cursor);
     this.requestDraw();
   }
 
@@ -80,7 +83,7 @@ export class Stage {
 
   /** Brings the picture up to the store, without drawing it. */
   follow(): void {
-    const { surface, state, body } = this.store;
+    const { surface, state, body, trial } = this.store;
     if (body !== null && body.epoch !== this.epoch) this.meet(body.epoch);
     const kind = state === null ? undefined : fieldKind(state.field);
     if (kind !== this.kind) this.scale = kEmptyScale;
@@ -90,8 +93,11 @@ export class Stage {
     this.marks.follow(surface);
     const held = state?.held ? surface.pointOn(state.heldFace, state.heldWeights) : null;
     this.marks.showHand(held);
-    if (state !== null && held !== null) this.arrow.show(held, state.force, this.size, body?.maxForce || 8.9);
+    const isFelt = trial !== null && !trial.showsForce;
+    if (state !== null && held !== null && !isFelt) this.arrow.show(held, state.force, this.size, body?.maxForce || 8.9);
     else this.arrow.hide();
+    if (trial !== null && !trial.finished && held === null) this.guide.show(trial.point, trial.direction, this.size, 1);
+    else this.guide.hide();
   }
 
   draw(): void {
