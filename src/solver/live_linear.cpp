@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <utility>
 
 #include <Eigen/LU>
@@ -18,29 +17,39 @@ constexpr double kPressureReduction = 3e-1;
 /// The same where E W is made.
 constexpr double kPatchReduction = 1e-4;
 
-/// The tangents of the tets of one state, with their pressures eliminated by D.
+/// The tangents of the tets, with their pressures eliminated by D, each at the state of its last look.
 class TetTangents final : public linalg::ElementSource {
  public:
   TetTangents(const model::Model& model, const linalg::FreeDofs& free, const model::State& state) {
     const auto scratch = model.make_scratch();
     model.tet_tangents(state, *scratch, blocks_, coupling_);
-    const std::vector<std::int32_t>& connectivity = model.space().connectivity;
-    nodes_.resize(connectivity.size() / 4);
-    for (std::size_t t = 0; t < nodes_.size(); ++t) {
-      std::copy_n(connectivity.begin() + static_cast<std::ptrdiff_t>(4 * t), 4, nodes_[t].begin());
-      std::sort(nodes_[t].begin(), nodes_[t].end());
+    take_nodes(model, free);
+    out_.resize(nodes_.size());
+    for (std::size_t t = 0; t < nodes_.size(); ++t) out_[t] = is_nothing(t);
+  }
+  /// Touched tets at `state`, the others as they were.
+  void follow(const model::Model& model, const linalg::FreeDofs& free, const model::State& state,
+              const TornModel& torn) {
+    std::vector<double> blocks;
+    std::vector<double> coupling;
+    const auto scratch = model.make_scratch();
+    model.tet_tangents(state, *scratch, blocks, coupling);
+    for (const std::int32_t tet : torn.touched) {
+      const auto at = static_cast<std::ptrdiff_t>(tet);
+      std::copy_n(blocks.begin() + 90 * at, 90, blocks_.begin() + 90 * at);
+      if (!coupling.empty()) std::copy_n(coupling.begin() + 12 * at, 12, coupling_.begin() + 12 * at);
+      out_[static_cast<std::size_t>(tet)] = is_nothing(static_cast<std::size_t>(tet));
     }
-    free_.assign(model.space().node_count(), 0);
-    for (const std::int32_t dof : free.dof) free_[static_cast<std::size_t>(dof / 3)] |= 1U << (dof % 3);
+    take_nodes(model, free);
   }
   /// Per tet, m^3/Pa.
   void set_diagonal(const VectorX& d) { d_ = d; }
-  /// Adds this part of its trace to the diagonal of each tet.
+  /// Adds this part of its mean diagonal to the diagonal of each tet.
   void shift_by(double part) { shift_ = part; }
 
   std::int32_t node_count() const override { return static_cast<std::int32_t>(free_.size()); }
   std::int32_t element_count() const override { return static_cast<std::int32_t>(nodes_.size()); }
-  bool is_active(std::int32_t) const override { return true; }
+  bool is_active(std::int32_t tet) const override { return out_[static_cast<std::size_t>(tet)] == 0; }
   std::array<std::int32_t, 4> nodes(std::int32_t tet) const override { return nodes_[static_cast<std::size_t>(tet)]; }
   void stiffness(std::int32_t tet, linalg::ElementMatrix& out) const override {
     const double* block = blocks_.data() + 90 * static_cast<std::size_t>(tet);
@@ -60,19 +69,52 @@ class TetTangents final : public linalg::ElementSource {
   void load(std::int32_t, linalg::ElementVector& out) const override { out.setZero(); }
   Vec3 node_load(std::int32_t) const override { return Vec3::Zero(); }
   unsigned free_components(std::int32_t node) const override { return free_[static_cast<std::size_t>(node)]; }
+  std::size_t memory_bytes() const {
+    return sizeof(double) * (blocks_.size() + coupling_.size()) + sizeof(nodes_[0]) * nodes_.size();
+  }
 
  private:
+  /// A tet that the model leaves out.
+  std::uint8_t is_nothing(std::size_t tet) const {
+    const double* block = blocks_.data() + 90 * tet;
+    return std::all_of(block, block + 90, [](double value) { return value == 0.0; }) ? 1 : 0;
+  }
+  void take_nodes(const model::Model& model, const linalg::FreeDofs& free) {
+    const std::vector<std::int32_t>& connectivity = model.space().connectivity;
+    nodes_.resize(connectivity.size() / 4);
+    for (std::size_t t = 0; t < nodes_.size(); ++t) {
+      std::copy_n(connectivity.begin() + static_cast<std::ptrdiff_t>(4 * t), 4, nodes_[t].begin());
+      std::sort(nodes_[t].begin(), nodes_[t].end());
+    }
+    free_.assign(model.space().node_count(), 0);
+    for (const std::int32_t dof : free.dof) free_[static_cast<std::size_t>(dof / 3)] |= 1U << (dof % 3);
+  }
+
   std::vector<double> blocks_, coupling_;
   std::vector<std::array<std::int32_t, 4>> nodes_;
-  std::vector<unsigned> free_;  ///< per node
+  std::vector<std::uint8_t> out_;  ///< per tet
+  std::vector<unsigned> free_;     ///< per node
   VectorX d_;
   double shift_ = 0.0;
 };
 
+linalg::ChebyshevInverse inverse_of_pressures(const model::Model& model) {
+  const linalg::SaddleMatrix K = model.make_tangent();
+  return K.C.rows() > 0 ? linalg::ChebyshevInverse(K.C, kPressureReduction) : linalg::ChebyshevInverse();
+}
+
 }  // namespace
+
+void TornModel::add(const TornModel& next) {
+  copied.insert(copied.end(), next.copied.begin(), next.copied.end());
+  touched.insert(touched.end(), next.touched.begin(), next.touched.end());
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+}
 
 /// Never changes once made.
 struct LiveLinear::Preconditioner {
+  TetTangents tets;
   std::shared_ptr<const linalg::FrontTree> tree;
   linalg::PressurePatches patches;
 
@@ -82,22 +124,21 @@ struct LiveLinear::Preconditioner {
   }
 };
 
-LiveLinear::LiveLinear(const model::Model& model, const linalg::FreeDofs& free, const model::State& state)
-    : model_(model), free_(free) {
-  const linalg::SaddleMatrix K = model.make_tangent();
-  if (K.C.rows() > 0) c_inverse_ = linalg::ChebyshevInverse(K.C, kPressureReduction);
-  preconditioner_ = prepare(state);
+LiveLinear::LiveLinear(std::shared_ptr<const model::Model> model, linalg::FreeDofs free, const model::State& state)
+    : model_(std::move(model)), free_(std::move(free)), c_inverse_(inverse_of_pressures(*model_)) {
+  preconditioner_ = prepare(*model_, free_, state);
 }
 
 LiveLinear::~LiveLinear() = default;
 
-std::shared_ptr<const LiveLinear::Preconditioner> LiveLinear::prepare(const model::State& state) const {
-  auto out = std::make_shared<Preconditioner>();
-  TetTangents tets(model_, free_, state);
-  linalg::SaddleMatrix K = model_.make_tangent();
+LiveLinear::Prepared LiveLinear::prepare(const model::Model& model, const linalg::FreeDofs& free,
+                                         const model::State& state) {
+  auto out = std::make_shared<Preconditioner>(Preconditioner{TetTangents(model, free, state), nullptr, {}});
+  TetTangents& tets = out->tets;
+  linalg::SaddleMatrix K = model.make_tangent();
   if (K.C.rows() > 0) {
-    const auto scratch = model_.make_scratch();
-    model_.tangent(state, *scratch, K);
+    const auto scratch = model.make_scratch();
+    model.tangent(state, *scratch, K);
     const linalg::ChebyshevInverse inverse(K.C, kPatchReduction);
     out->patches.set(K, [&](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
       VectorX column;
@@ -113,7 +154,7 @@ std::shared_ptr<const LiveLinear::Preconditioner> LiveLinear::prepare(const mode
   }
   // A body under compression may have no definite tangent: what is solved is one that is stiffer.
   constexpr double kFirstShift = 0.03;
-  constexpr double kLargestShift = 3.0;
+  constexpr double kLargestShift = 1e4;
   for (double shift = 0.0;; shift = std::max(kFirstShift, 3.0 * shift)) {
     tets.shift_by(shift);
     out->tree = linalg::FrontTree::make(tets, {});
@@ -121,7 +162,7 @@ std::shared_ptr<const LiveLinear::Preconditioner> LiveLinear::prepare(const mode
     RHEXIS_CHECK(shift <= kLargestShift, "not positive definite with {} of its diagonal added", shift);
   }
   if (K.C.rows() > 0) {
-    out->patches.correct(K, free_, [&](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
+    out->patches.correct(K, free, [&](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
       VectorX column;
       VectorX solved;
       for (Eigen::Index j = 0; j < b.cols(); ++j) {
@@ -132,6 +173,34 @@ std::shared_ptr<const LiveLinear::Preconditioner> LiveLinear::prepare(const mode
     });
   }
   return out;
+}
+
+LiveLinear::Prepared LiveLinear::followed(const Preconditioner& before, const model::State& state,
+                                          const TornModel& torn) const {
+  auto out = std::make_shared<Preconditioner>(before);
+  out->tets.follow(*model_, free_, state, torn);
+  linalg::ElementChange change;
+  change.copied = torn.copied;
+  change.touched = torn.touched;
+  out->tree = before.tree->updated(out->tets, change);
+  if (out->tree->outcome() != linalg::FrontOutcome::ok) return nullptr;
+  out->patches.follow(torn.copied, free_);
+  return out;
+}
+
+void LiveLinear::follow(std::shared_ptr<const model::Model> model, linalg::FreeDofs free, const model::State& state,
+                        const TornModel& torn) {
+  model_ = std::move(model);
+  free_ = std::move(free);
+  c_inverse_ = inverse_of_pressures(*model_);
+  K_ = nullptr;
+  rows_.clear();
+  if (task_.under_way()) {
+    torn_since_.add(torn);
+    state_then_ = state;
+  }
+  preconditioner_ = followed(*preconditioner_, state, torn);
+  if (!preconditioner_) preconditioner_ = prepare(*model_, free_, state);
 }
 
 void LiveLinear::set_tangent(const linalg::SaddleMatrix& K) {
@@ -209,6 +278,7 @@ LiveSolve LiveLinear::solve(Point point, const VectorX& bu, const VectorX& bp, d
         [&](const VectorX& x, VectorX& y) { apply(x, y); }, [&](const VectorX& r, VectorX& z) { precondition(r, z); },
         tolerance * norm, most, work_, r_, xu);
     out.iterations = result.iterations;
+    worked_ += result.iterations;
     out.truncated = result.end == linalg::CgEnd::negative_curvature;
     if (out.truncated && result.iterations == 1) xu = work_.z;  // nothing yet: the preconditioned residual, downhill
   }
@@ -223,19 +293,25 @@ LiveSolve LiveLinear::solve(Point point, const VectorX& bu, const VectorX& bp, d
 
 void LiveLinear::refresh(const model::State& state) {
   if (task_.under_way()) return;
-  ready_ = false;
-  task_.start([this, state] {
-    refreshed_ = prepare(state);
-    ready_ = true;
-  });
+  worked_ = 0;
+  torn_since_ = {};
+  task_.start([this, model = model_, free = free_, state] { refreshed_ = prepare(*model, free, state); });
 }
 
 bool LiveLinear::take_refreshed() {
-  if (!task_.under_way() || !ready_) return false;
+  if (!task_.under_way() || worked_ < kRefreshWork) return false;
   task_.wait();
-  preconditioner_ = std::move(refreshed_);
+  Prepared next = std::move(refreshed_);
+  if (!torn_since_.touched.empty()) next = followed(*next, state_then_, torn_since_);
+  if (!next) return false;
+  preconditioner_ = std::move(next);
   prepare_constraint();
   return true;
+}
+
+std::size_t LiveLinear::memory_bytes() const {
+  return preconditioner_->tree->memory_bytes() + preconditioner_->patches.memory_bytes() +
+         preconditioner_->tets.memory_bytes() + c_inverse_.memory_bytes();
 }
 
 }  // namespace rhexis::solver
