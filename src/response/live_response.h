@@ -30,24 +30,25 @@ class LiveResponse final : public Response {
   [[nodiscard]] static Expected<std::unique_ptr<LiveResponse>> make(const mesh::TornMesh& mesh,
                                                                     LiveResponseSettings settings);
 
+  void hold(const SurfacePoint& point, ContactMode mode) override;
   /// A body of large strain is held at a point: none is the only set of nodes that it takes.
   void grasp(std::span<const NodeId> nodes) override;
-  void hold(const SurfacePoint& point, ContactMode mode) override;
   MoveReport move(const Vec3& hand) override;
   [[nodiscard]] bool is_linear() const override { return false; }
+  [[nodiscard]] const VectorX& rest() const override { return rest_; }
+  [[nodiscard]] const Eigen::MatrixXd& compliance() const override { return compliance_; }
+
   [[nodiscard]] DeformedTet deformed(TetId tet) const override;
+  [[nodiscard]] double stored_energy(const VectorX& held_forces) override;
+  /// Pieces out of the solve stay where they came off.
+  void whole_displacement(const VectorX& held_forces, double loads, VectorX& out) override;
+  void displacement(std::span<const NodeId> nodes, const VectorX& held_forces, double loads, VectorX& out) override;
+
   /// Not ok where the cut would turn a tet inside out in the deformed body; nothing is followed then.
   FollowReport follow(const mesh::MeshEdit& edit, std::span<const Focus> focus,
                       const CrackAdvance* advance = nullptr) override;
   /// To the state in which the edit was made, to the last bit.
   void go_back(const mesh::MeshEdit& edit, std::span<const Focus> focus) override;
-
-  [[nodiscard]] const Eigen::MatrixXd& compliance() const override { return compliance_; }
-  [[nodiscard]] const VectorX& rest() const override { return rest_; }
-  void displacement(std::span<const NodeId> nodes, const VectorX& held_forces, double loads, VectorX& out) override;
-  /// Pieces out of the solve stay where they came off.
-  void whole_displacement(const VectorX& held_forces, double loads, VectorX& out) override;
-  [[nodiscard]] double stored_energy(const VectorX& held_forces) override;
   [[nodiscard]] std::size_t memory_bytes() const override;
 
   [[nodiscard]] const model::State& state() const { return live_->state(); }
