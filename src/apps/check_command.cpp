@@ -58,7 +58,7 @@ int check_tear(const scene::Scene& scene, const std::string& name, const Common&
   for (const scene::PullSettings& pull : problem.pulls) seconds += pull.seconds + pull.hold;
   if (common.json) {
     print_json({{"title", problem.title},
-                {"model", "linear"},
+                {"model", start->tear->model_name()},
                 {"nodes", problem.mesh.node_count()},
                 {"tets", problem.mesh.tet_count()},
                 {"unknowns", 3 * problem.mesh.node_count() - problem.body.supports.size()},
@@ -73,7 +73,7 @@ int check_tear(const scene::Scene& scene, const std::string& name, const Common&
   say(common, "{}\n", problem.title);
   say(common, "body            {} nodes, {} tets, {:.4g} m^3\n", problem.mesh.node_count(), problem.mesh.tet_count(),
       mesh::total_volume(problem.mesh));
-  say(common, "model           linear: {} unknowns, {} displacements held\n",
+  say(common, "model           {}: {} unknowns, {} displacements held\n", start->tear->model_name(),
       3 * problem.mesh.node_count() - problem.body.supports.size(), problem.body.supports.size());
   say(common, "would tear      {} cracks to start with, {} pulls, {:g} s in ticks of 1 ms\n", problem.cracks.size(),
       problem.pulls.size(), seconds);

@@ -64,6 +64,8 @@ class Script {
     });
     if (report.let_go)
       spdlog::warn("{:.3f} s: the hand has let go: what it held has come off, or lost its support", time);
+    if (!report.late.empty() && report.late != late_) spdlog::warn("{:.3f} s: {}", time, report.late);
+    if (!report.late.empty()) late_ = report.late;
     if (written) written = output_.write_tick(tear_, time, hand, report);
     if (!written) return fail(std::move(written.error()));
     return report.trouble;
@@ -83,6 +85,7 @@ class Script {
   TearOutput& output_;
   int ticks_ = 0;
   int tick_ = 0;
+  std::string late_;  ///< said already
   response::RecordUse said_;
 };
 
@@ -102,8 +105,9 @@ int tear(const SceneOptions& options, const Common& common) {
   const double build_seconds = watch.seconds() - read_seconds;
   Expected<TearOutput> output = TearOutput::open(options.folder());
   if (!output) return report(output.error());
-  say(common, "{}\nbody            {} nodes, {} tets; model linear\ntears by        {}, {}\n", problem.title,
-      problem.mesh.node_count(), problem.mesh.tet_count(), tear.settings().criterion, problem.fracture.incision);
+  say(common, "{}\nbody            {} nodes, {} tets; model {}\ntears by        {}, {}\n", problem.title,
+      problem.mesh.node_count(), problem.mesh.tet_count(), tear.model_name(), tear.settings().criterion,
+      problem.fracture.incision);
 
   Expected<std::string> why;
   {

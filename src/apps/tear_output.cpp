@@ -16,7 +16,9 @@ std::vector<mesh::Field> fields_of(session::TearSession& tear, const VectorX& u)
   std::vector<TetId> local;
   for (const fracture::LocalObject& object : tear.local_objects())
     local.insert(local.end(), object.tets().begin(), object.tets().end());
-  return result::make_torn_fields(tear.body(), {.body = &tear.settings().body, .u = &u, .local = local});
+  result::TornState state{.body = &tear.settings().body, .u = &u, .local = local};
+  if (!tear.is_linear()) state.stress = [&](TetId tet) { return tear.stress(tet, u); };
+  return result::make_torn_fields(tear.body(), state);
 }
 
 }  // namespace

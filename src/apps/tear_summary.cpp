@@ -67,7 +67,7 @@ ordered_json make_tear_summary(const scene::TearProblem& problem, const std::vec
   ordered_json summary;
   summary["title"] = problem.title;
   summary["scene"] = scene;
-  summary["model"] = "linear";
+  summary["model"] = tear.model_name();
   summary["criterion"] = tear.settings().criterion;
   summary["incision"] = problem.fracture.incision;
   summary["response"] = problem.interaction.response;

@@ -36,19 +36,25 @@ void repeat_first_lane(int lane, TetBatch& batch) {
 
 }  // namespace
 
-TetBatches::TetBatches(const mesh::TetMesh& mesh) {
+TetBatches::TetBatches(const mesh::TetMesh& mesh, std::span<const std::uint8_t> left_out) {
+  RHEXIS_CHECK(left_out.empty() || left_out.size() == mesh.tet_count(), "{} marks for {} tets", left_out.size(),
+               mesh.tet_count());
   TetOrder order = order_tets(mesh);
   colour_start_ = std::move(order.colour_start);
+  std::vector<std::int32_t> tets;
   for (std::size_t c = 0; c + 1 < order.chunk_start.size(); ++c) {
-    const std::size_t begin = order.chunk_start[c], end = order.chunk_start[c + 1];
-    const std::size_t count = (end - begin + kBatch - 1) / kBatch;
+    tets.clear();
+    for (std::size_t i = order.chunk_start[c]; i < order.chunk_start[c + 1]; ++i) {
+      if (left_out.empty() || left_out[static_cast<std::size_t>(order.tets[i])] == 0) tets.push_back(order.tets[i]);
+    }
+    const std::size_t count = (tets.size() + kBatch - 1) / kBatch;
     chunks_.push_back({static_cast<std::int32_t>(batches_.size()), static_cast<std::int32_t>(count)});
-    for (std::size_t first = begin; first < end; first += kBatch) {
+    for (std::size_t first = 0; first < tets.size(); first += kBatch) {
       TetBatch& batch = batches_.emplace_back();
-      batch.count = static_cast<std::int32_t>(std::min<std::size_t>(kBatch, end - first));
+      batch.count = static_cast<std::int32_t>(std::min<std::size_t>(kBatch, tets.size() - first));
       for (int lane = 0; lane < kBatch; ++lane) {
         if (lane < batch.count) {
-          fill_lane(mesh, order.tets[first + static_cast<std::size_t>(lane)], lane, batch);
+          fill_lane(mesh, tets[first + static_cast<std::size_t>(lane)], lane, batch);
         } else {
           repeat_first_lane(lane, batch);
         }

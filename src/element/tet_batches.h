@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "element/tet_batch.h"
@@ -17,8 +18,9 @@ namespace rhexis::element {
 
 class TetBatches {
  public:
-  /// Tets must be positively oriented and not flat.
-  explicit TetBatches(const mesh::TetMesh& mesh);
+  /// Tets must be positively oriented and not flat. `left_out`: per tet, nonzero where it is no part of the body;
+  /// empty: all are.
+  explicit TetBatches(const mesh::TetMesh& mesh, std::span<const std::uint8_t> left_out = {});
 
   /// Looks up where the blocks of each tet lie; before the first tangent.
   void place_blocks(const linalg::BlockPattern& pattern);

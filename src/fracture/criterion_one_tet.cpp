@@ -48,12 +48,13 @@ struct Invariants {
   double root_j2;
 };
 
-/// A rule has a value and a direction by the principal stresses, and a bound of the value that needs none.
+/// A rule has a value and a direction by the principal stresses and the stretch, which maps the normals of planes back
+/// to the reference, and a bound of the value that needs none.
 struct MaximumPrincipal {
   static double bound(const Invariants& s) { return s.p + 2.0 / std::sqrt(3.0) * s.root_j2; }
   static double value(const PrincipalStress& s) { return s.value[0]; }
-  static Vec3 direction(const PrincipalStress& s, const FrontPoint& point) {
-    return direction_in(point, axis_near(s, 0, point.normal()));
+  static Vec3 direction(const PrincipalStress& s, const Mat3& stretch, const FrontPoint& point) {
+    return direction_in(point, stretch * axis_near(s, 0, point.normal()));
   }
 };
 
@@ -61,11 +62,11 @@ struct MaximumShear {
   static double bound(const Invariants& s) { return 2.0 * s.root_j2; }
   static double value(const PrincipalStress& s) { return s.value[0] - s.value[2]; }
   /// Of the two planes at 45 degrees between s1 and s3, the one nearer the present direction.
-  static Vec3 direction(const PrincipalStress& s, const FrontPoint& point) {
+  static Vec3 direction(const PrincipalStress& s, const Mat3& stretch, const FrontPoint& point) {
     const Vec3 first = axis_near(s, 0, point.normal());
     const Vec3 third = axis_near(s, 2, point.direction);
-    const Vec3 one = direction_in(point, first + third);
-    const Vec3 other = direction_in(point, first - third);
+    const Vec3 one = direction_in(point, stretch * (first + third));
+    const Vec3 other = direction_in(point, stretch * (first - third));
     const double nearer = other.dot(point.direction) - one.dot(point.direction);
     if (std::abs(nearer) > kSameStress) return nearer > 0.0 ? other : one;
     return other.dot(point.normal()) > one.dot(point.normal()) ? other : one;  // alike: towards the upper flank
@@ -81,8 +82,8 @@ struct VonMises {
     return std::sqrt(0.5 * (a * a + b * b + c * c));
   }
   /// It gives none: the plane of s1 (2.28).
-  static Vec3 direction(const PrincipalStress& s, const FrontPoint& point) {
-    return MaximumPrincipal::direction(s, point);
+  static Vec3 direction(const PrincipalStress& s, const Mat3& stretch, const FrontPoint& point) {
+    return MaximumPrincipal::direction(s, stretch, point);
   }
 };
 
@@ -95,6 +96,7 @@ class OneTetCriterion final : public Criterion {
     Judgement out;
     out.direction = section.point.direction;
     PrincipalStress decisive;
+    Mat3 stretch = Mat3::Identity();
     for (const TetStress& tet : tets) {
       const auto seen = see(section, tet);
       if (!seen || !counts(*seen, settings_)) continue;
@@ -110,11 +112,12 @@ class OneTetCriterion final : public Criterion {
         out.tet = tet.tet;
         out.value = value;
         decisive = principal;
+        stretch = tet.stretch;
       }
     }
     if (!out.tet.valid()) return out;
     out.met = out.value >= settings_.strength;
-    out.direction = Rule::direction(decisive, section.point);
+    out.direction = Rule::direction(decisive, stretch, section.point);
     return out;
   }
 

@@ -209,4 +209,9 @@ void LocalObject::take(const VectorX& u) {
   core_->find_stresses();
 }
 
+void LocalObject::take(const VectorX& u, const std::function<void(TetStress&)>& set_stress) {
+  take(u);
+  for (TetStress& tet : core_->stresses) set_stress(tet);
+}
+
 }  // namespace rhexis::fracture

@@ -6,6 +6,7 @@
 /// solve would find the same once more, and the displacement is taken as it is. Made anew after each advance.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -50,6 +51,8 @@ class LocalObject {
   [[nodiscard]] bool solve(const VectorX& u_boundary);
   /// `u`: m, 3 per node of nodes(), in equilibrium. Does not allocate.
   void take(const VectorX& u);
+  /// The same of a body of large strain, whose stress is its own: of each tet in turn.
+  void take(const VectorX& u, const std::function<void(TetStress&)>& set_stress);
 
   /// Of the last solve, or of what was taken last. Zero before the first.
   [[nodiscard]] const VectorX& displacement() const;             ///< m, 3 per node

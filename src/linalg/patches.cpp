@@ -1,5 +1,7 @@
 #include "linalg/patches.h"
 
+#include <algorithm>
+
 #include "base/check.h"
 
 namespace rhexis::linalg {
@@ -39,9 +41,10 @@ std::vector<std::int32_t> cut_into_patches(const CsrPattern& pattern, std::int32
   std::vector<std::int32_t> members;
   std::int32_t count = 0;
   for (std::int32_t seed = 0; seed < pattern.rows(); ++seed) {
-    if (patch[static_cast<std::size_t>(seed)] >= 0) continue;
+    const auto first = static_cast<std::size_t>(seed);
+    if (patch[first] >= 0 || graph.row_start[first] == graph.row_start[first + 1]) continue;
     members.assign(1, seed);
-    patch[static_cast<std::size_t>(seed)] = count;
+    patch[first] = count;
     std::int32_t neighbour = -1;
     for (std::size_t at = 0; at < members.size(); ++at) {
       const auto row = static_cast<std::size_t>(members[at]);
@@ -62,6 +65,7 @@ std::vector<std::int32_t> cut_into_patches(const CsrPattern& pattern, std::int32
       ++count;
     }
   }
+  for (std::int32_t& of : patch) of = of < 0 ? std::max(0, count - 1) : of;
   return patch;
 }
 

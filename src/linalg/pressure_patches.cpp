@@ -102,6 +102,19 @@ void PressurePatches::correct(const SaddleMatrix& K, const FreeDofs& free, const
   V_ = std::move(solved);
 }
 
+void PressurePatches::follow(std::span<const std::int32_t> copied, const FreeDofs& free) {
+  if (count() == 0) return;
+  const Eigen::Index nodes = V_.rows() / 3;
+  V_.conservativeResize(V_.rows() + 3 * static_cast<Eigen::Index>(copied.size()), Eigen::NoChange);
+  for (std::size_t i = 0; i < copied.size(); ++i)
+    V_.middleRows<3>(3 * (nodes + static_cast<Eigen::Index>(i))) = V_.middleRows<3>(3 * Eigen::Index{copied[i]});
+  for (Eigen::Index col = 0; col < V_.cols(); ++col) {
+    VectorX of = V_.col(col);
+    clear_held(free, of);
+    V_.col(col) = of;
+  }
+}
+
 void PressurePatches::apply(const VectorX& r, VectorX& z) const {
   if (count() == 0) return;
   VectorX small = V_.transpose() * r;

@@ -10,7 +10,9 @@
 /// E W and G depend on C alone and stay while C does; P^-1 V costs k solves per factorisation of P.
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <span>
 
 #include <Eigen/Cholesky>
 
@@ -28,6 +30,9 @@ class PressurePatches {
   void set(const SaddleMatrix& K, const Solve& c_inverse);
   /// Takes B and the inverse of P, over the free dofs.
   void correct(const SaddleMatrix& K, const FreeDofs& free, const Solve& p_inverse);
+  /// The body has taken copies of some of its nodes and P has followed; `copied`: the node that each appended one is a
+  /// copy of. Copies that move as one are what P was, so that P~ stays definite: no softer anywhere than P has become.
+  void follow(std::span<const std::int32_t> copied, const FreeDofs& free);
   /// From z = P^-1 r to z = P~^-1 r.
   void apply(const VectorX& r, VectorX& z) const;
 

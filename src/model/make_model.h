@@ -3,8 +3,10 @@
 /// The six models of docs/models.md by name.
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "material/parameters.h"
@@ -24,6 +26,11 @@ inline constexpr std::array<std::string_view, 6> kModelNames{
   return kind == ModelKind::hyperelastic || kind == ModelKind::taylor_hood;
 }
 
+/// A model that can be torn and led by a hand: on linear tets, one tangent a tet.
+[[nodiscard]] constexpr bool is_live(ModelKind kind) {
+  return kind != ModelKind::mass_spring && kind != ModelKind::taylor_hood;
+}
+
 enum class CorotatedTangent { exact, warped };  ///< warped: the paper's R K_e R^T
 
 struct ModelSettings {
@@ -35,7 +42,14 @@ struct ModelSettings {
   CorotatedTangent corotated_tangent = CorotatedTangent::exact;
 };
 
-/// The mesh must have passed mesh::find_defects. Nodes without a tet carry no stiffness: hold them.
-[[nodiscard]] std::unique_ptr<Model> make_model(const mesh::TetMesh& mesh, const ModelSettings& settings);
+/// Per tet of a mesh: nonzero where it is no part of the body, as a torn one leaves its tets in their places. Empty:
+/// all are part of it.
+using LeftOut = std::span<const std::uint8_t>;
+
+/// The mesh must have passed mesh::find_defects. Nodes without a tet carry no stiffness: hold them. Tets left out keep
+/// their numbers: their lambda has no force and has to stay zero, their J counts as 1. Not of mass-spring and
+/// taylor-hood, which take whole meshes: RHEXIS_CHECK.
+[[nodiscard]] std::unique_ptr<Model> make_model(const mesh::TetMesh& mesh, const ModelSettings& settings,
+                                                LeftOut left_out = {});
 
 }  // namespace rhexis::model

@@ -43,8 +43,8 @@ template <class Response>
 class P1Displacement final : public P1Model {
  public:
   P1Displacement(const mesh::TetMesh& mesh, std::string_view name, const element::TetKernels& kernels,
-                 const element::DisplacementKernels<Response>& own, const material::Elastic& elastic)
-      : P1Model(mesh, kernels), name_(name), own_(own) {
+                 const element::DisplacementKernels<Response>& own, const material::Elastic& elastic, LeftOut left_out)
+      : P1Model(mesh, kernels, left_out), name_(name), own_(own) {
     response_.lame_lambda = elastic.lame_lambda();
     response_.lame_mu = elastic.lame_mu();
   }
@@ -92,6 +92,10 @@ class P1Displacement final : public P1Model {
                           [&](std::size_t, const Mat3& F, double J) { return cauchy_stress(response_, F, J); });
   }
 
+  Mat3 stress_of_tet(const State&, TetId, const Mat3& F) const override {
+    return cauchy_stress(response_, F, F.determinant());
+  }
+
   /// All three have the same stiffness at rest.
   linalg::BlockPreconditioner preconditioner() const override {
     return {small_strain_stiffness(response_.lame_lambda, response_.lame_mu), {}};
@@ -106,25 +110,25 @@ class P1Displacement final : public P1Model {
 }  // namespace
 
 std::unique_ptr<Model> make_linear(const mesh::TetMesh& mesh, const ModelSettings& settings,
-                                   const element::TetKernels& kernels) {
+                                   const element::TetKernels& kernels, LeftOut left_out) {
   return std::make_unique<P1Displacement<element::SmallStrain>>(mesh, "linear", kernels, kernels.linear,
-                                                                settings.elastic);
+                                                                settings.elastic, left_out);
 }
 
 std::unique_ptr<Model> make_corotated(const mesh::TetMesh& mesh, const ModelSettings& settings,
-                                      const element::TetKernels& kernels) {
+                                      const element::TetKernels& kernels, LeftOut left_out) {
   if (settings.corotated_tangent == CorotatedTangent::warped) {
-    return std::make_unique<P1Displacement<element::WarpedCorotated>>(mesh, "corotated", kernels,
-                                                                      kernels.warped_corotated, settings.elastic);
+    return std::make_unique<P1Displacement<element::WarpedCorotated>>(
+        mesh, "corotated", kernels, kernels.warped_corotated, settings.elastic, left_out);
   }
   return std::make_unique<P1Displacement<element::Corotated>>(mesh, "corotated", kernels, kernels.corotated,
-                                                              settings.elastic);
+                                                              settings.elastic, left_out);
 }
 
 std::unique_ptr<Model> make_geometrically_nonlinear(const mesh::TetMesh& mesh, const ModelSettings& settings,
-                                                    const element::TetKernels& kernels) {
+                                                    const element::TetKernels& kernels, LeftOut left_out) {
   return std::make_unique<P1Displacement<material::StVenantKirchhoffLaw>>(
-      mesh, "geometrically-nonlinear", kernels, kernels.st_venant_kirchhoff, settings.elastic);
+      mesh, "geometrically-nonlinear", kernels, kernels.st_venant_kirchhoff, settings.elastic, left_out);
 }
 
 }  // namespace rhexis::model

@@ -32,17 +32,19 @@ template <class Law>
 class P1Hyperelastic final : public P1Model {
  public:
   P1Hyperelastic(const mesh::TetMesh& mesh, const element::TetKernels& kernels, const element::MixedKernels<Law>& own,
-                 const Law& law, const ModelSettings& settings)
-      : P1Model(mesh, kernels),
+                 const Law& law, const ModelSettings& settings, LeftOut left_out)
+      : P1Model(mesh, kernels, left_out),
         own_(own),
         law_(law),
         shear_modulus_(settings.law.shear_modulus()),
-        initial_lambda_(settings.initial_lambda),
         coupling_(make_coupling_pattern(mesh)),
-        C_(make_pressure_matrix(mesh, settings.law.kappa, settings.beta)) {
-    volume_.resize(static_cast<Eigen::Index>(mesh.tet_count()));
+        C_(make_pressure_matrix(mesh, settings.law.kappa, settings.beta, left_out)) {
+    volume_.setZero(static_cast<Eigen::Index>(mesh.tet_count()));
+    initial_lambda_.setZero(volume_.size());
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+      if (!left_out.empty() && left_out[t] != 0) continue;
       volume_[static_cast<Eigen::Index>(t)] = mesh::signed_volume(mesh, TetId(t));
+      initial_lambda_[static_cast<Eigen::Index>(t)] = settings.initial_lambda;
     }
   }
 
@@ -52,8 +54,7 @@ class P1Hyperelastic final : public P1Model {
   bool allows_inversion() const override { return false; }
 
   State initial_state() const override {
-    return {VectorX::Zero(static_cast<Eigen::Index>(space().dof_count())),
-            VectorX::Constant(pressure_unknowns(), initial_lambda_)};
+    return {VectorX::Zero(static_cast<Eigen::Index>(space().dof_count())), initial_lambda_};
   }
 
   /// C is constant and filled here, once; tangent() leaves it alone.
@@ -104,22 +105,19 @@ class P1Hyperelastic final : public P1Model {
     return stored - 0.5 * state.lambda.dot(product);
   }
 
-  /// sigma = F S F^T / J + lambda I; the first part has no trace, so that lambda is the mean.
   TetFields fields(const State& state) const override {
-    TetFields out = collect_fields(state.u, [&](std::size_t tet, const Mat3& F, double J) {
-      double f[9];
-      for (int i = 0; i < 9; ++i) f[i] = F(i / 3, i % 3);
-      const material::Sym<double> s = law_.stress(material::deformation_of(f, J));
-      Mat3 S;
-      S << s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz;
-      return Mat3(F * S * F.transpose() / J + state.lambda[static_cast<Eigen::Index>(tet)] * Mat3::Identity());
-    });
+    TetFields out =
+        collect_fields(state.u, [&](std::size_t tet, const Mat3& F, double J) { return cauchy(state, tet, F, J); });
     out.lambda.assign(state.lambda.begin(), state.lambda.end());
     return out;
   }
 
+  Mat3 stress_of_tet(const State& state, TetId tet, const Mat3& F) const override {
+    return cauchy(state, tet.index(), F, F.determinant());
+  }
+
   double volume_change_norm(const State& state) const override {
-    VectorX change(volume_.size());
+    VectorX change = VectorX::Zero(volume_.size());
     for_each_tet(state.u, [&](std::size_t tet, const Mat3&, double J) {
       const auto t = static_cast<Eigen::Index>(tet);
       change[t] = volume_[t] * (J - 1.0);
@@ -147,26 +145,36 @@ class P1Hyperelastic final : public P1Model {
   }
 
  private:
+  /// sigma = F S F^T / J + lambda I; the first part has no trace, so that lambda is the mean.
+  Mat3 cauchy(const State& state, std::size_t tet, const Mat3& F, double J) const {
+    double f[9];
+    for (int i = 0; i < 9; ++i) f[i] = F(i / 3, i % 3);
+    const material::Sym<double> s = law_.stress(material::deformation_of(f, J));
+    Mat3 S;
+    S << s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz;
+    return F * S * F.transpose() / J + state.lambda[static_cast<Eigen::Index>(tet)] * Mat3::Identity();
+  }
+
   const element::MixedKernels<Law>& own_;
   Law law_;
   double shear_modulus_ = 0.0;                          ///< Pa
-  double initial_lambda_ = 0.0;                         ///< Pa
   std::shared_ptr<const linalg::CsrPattern> coupling_;  ///< of B^T
   linalg::SymmetricCsr C_;                              ///< diag(V) / kappa + K_S
-  VectorX volume_;                                      ///< per tet, m^3
+  VectorX volume_;                                      ///< per tet, m^3, zero where left out
+  VectorX initial_lambda_;                              ///< per tet, Pa, zero where left out
 };
 
 }  // namespace
 
 std::unique_ptr<Model> make_hyperelastic(const mesh::TetMesh& mesh, const ModelSettings& settings,
-                                         const element::TetKernels& kernels) {
+                                         const element::TetKernels& kernels, LeftOut left_out) {
   const material::MooneyRivlin& p = settings.law;
   if (p.c2 == 0.0) {
     return std::make_unique<P1Hyperelastic<material::NeoHookeanLaw>>(mesh, kernels, kernels.neo_hookean,
-                                                                     material::NeoHookeanLaw{p.c1}, settings);
+                                                                     material::NeoHookeanLaw{p.c1}, settings, left_out);
   }
-  return std::make_unique<P1Hyperelastic<material::MooneyRivlinLaw>>(mesh, kernels, kernels.mooney_rivlin,
-                                                                     material::MooneyRivlinLaw{p.c1, p.c2}, settings);
+  return std::make_unique<P1Hyperelastic<material::MooneyRivlinLaw>>(
+      mesh, kernels, kernels.mooney_rivlin, material::MooneyRivlinLaw{p.c1, p.c2}, settings, left_out);
 }
 
 }  // namespace rhexis::model

@@ -14,8 +14,8 @@ struct TetKernels;
 
 namespace rhexis::model {
 
-/// Reads law (c2 = 0 is neo-Hookean), beta and initial_lambda of the settings.
+/// Reads law (c2 = 0 is neo-Hookean), beta and initial_lambda of the settings. `left_out` as of make_model.
 [[nodiscard]] std::unique_ptr<Model> make_hyperelastic(const mesh::TetMesh& mesh, const ModelSettings& settings,
-                                                       const element::TetKernels& kernels);
+                                                       const element::TetKernels& kernels, LeftOut left_out = {});
 
 }  // namespace rhexis::model

@@ -23,11 +23,11 @@ void set_zero(std::vector<double>& values) {
   });
 }
 
-P1Model::P1Model(const mesh::TetMesh& mesh, const element::TetKernels& kernels)
+P1Model::P1Model(const mesh::TetMesh& mesh, const element::TetKernels& kernels, LeftOut left_out)
     : space_(make_p1_space(mesh)),
       tet_count_(mesh.tet_count()),
       kernels_(kernels),
-      batches_(mesh),
+      batches_(mesh, left_out),
       pattern_(std::make_shared<linalg::BlockPattern>(
           linalg::make_block_pattern(static_cast<std::int32_t>(mesh.node_count()), space_.connectivity, 4))) {
   batches_.place_blocks(*pattern_);

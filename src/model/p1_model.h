@@ -7,6 +7,7 @@
 
 #include "element/tet_batches.h"
 #include "element/tet_kernels.h"
+#include "model/make_model.h"
 #include "model/model.h"
 
 namespace rhexis::model {
@@ -19,7 +20,7 @@ class P1Model : public Model {
   [[nodiscard]] std::size_t memory_bytes() const override;
 
  protected:
-  P1Model(const mesh::TetMesh& mesh, const element::TetKernels& kernels);
+  P1Model(const mesh::TetMesh& mesh, const element::TetKernels& kernels, LeftOut left_out);
 
   [[nodiscard]] std::size_t tet_count() const { return tet_count_; }
   [[nodiscard]] const element::TetBatches& batches() const { return batches_; }
@@ -31,7 +32,7 @@ class P1Model : public Model {
   [[nodiscard]] double sum_over_chunks(const std::function<double(const element::TetRun&)>& part) const;
   /// The stiffness of small strains about rest, for the preconditioners.
   [[nodiscard]] linalg::SymmetricBlockMatrix small_strain_stiffness(double lame_lambda, double lame_mu) const;
-  /// Calls visit(tet, F, J) for every tet, in parallel.
+  /// Calls visit(tet, F, J) for every tet that is not left out, in parallel.
   void for_each_tet(const VectorX& u, const std::function<void(std::size_t, const Mat3&, double)>& visit) const;
   /// Fills out.J and out.stress from the Cauchy stress of each tet, and its mean into out.lambda.
   [[nodiscard]] TetFields collect_fields(

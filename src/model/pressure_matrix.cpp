@@ -6,8 +6,17 @@
 #include "mesh/surface.h"
 
 namespace rhexis::model {
+namespace {
 
-linalg::SymmetricCsr make_pressure_matrix(const mesh::TetMesh& mesh, double kappa, double beta) {
+/// The lambda of a tet left out is in no equation but its own. So many times the mean of the others on its diagonal
+/// keeps it out of sums over many tets as well, which preconditioners take of C^-1. Its own volume, which nobody keeps
+/// above zero any more, is not read.
+constexpr double kLeftOut = 1e6;
+
+}  // namespace
+
+linalg::SymmetricCsr make_pressure_matrix(const mesh::TetMesh& mesh, double kappa, double beta, LeftOut left_out) {
+  const auto is_out = [&](std::size_t t) { return !left_out.empty() && left_out[t] != 0; };
   struct Jump {
     std::int32_t row, col;  ///< row > col
     double factor;
@@ -20,6 +29,7 @@ linalg::SymmetricCsr make_pressure_matrix(const mesh::TetMesh& mesh, double kapp
     jumps.reserve(faces.interior.size());
     for (const mesh::InteriorFace& face : faces.interior) {
       const TetId a = face.first.tet, b = face.second.tet;
+      if (is_out(a.index()) || is_out(b.index())) continue;
       const double factor = beta * (h[a.index()] + h[b.index()]) * mesh::face_area(mesh, face.first) / kappa;
       jumps.push_back({std::max(a, b).value(), std::min(a, b).value(), factor});
     }
@@ -41,7 +51,18 @@ linalg::SymmetricCsr make_pressure_matrix(const mesh::TetMesh& mesh, double kapp
   const auto diagonal = [&](std::size_t row) -> double& {
     return C.values[static_cast<std::size_t>(pattern->row_start[row + 1]) - 1];
   };
-  for (std::size_t t = 0; t < mesh.tet_count(); ++t) diagonal(t) = mesh::signed_volume(mesh, TetId(t)) / kappa;
+  double whole = 0.0;
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+    if (is_out(t)) continue;
+    diagonal(t) = mesh::signed_volume(mesh, TetId(t)) / kappa;
+    whole += diagonal(t);
+    ++count;
+  }
+  const double mean = count > 0 ? whole / static_cast<double>(count) : 1.0 / kappa;
+  for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+    if (is_out(t)) diagonal(t) = kLeftOut * (1.0 + beta) * mean;
+  }
   next = 0;
   for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
     auto at = static_cast<std::size_t>(pattern->row_start[t]);

@@ -48,8 +48,6 @@ class ExactResponse final : public Response {
   [[nodiscard]] const VectorX& rest() const override { return rest_; }
   void displacement(std::span<const NodeId> nodes, const VectorX& held_forces, double loads, VectorX& out) override;
   void whole_displacement(const VectorX& held_forces, double loads, VectorX& out) override;
-  [[nodiscard]] bool is_of_torn_body() const override { return true; }
-  [[nodiscard]] std::optional<RecordUse> record_use() const override { return std::nullopt; }
   [[nodiscard]] double stored_energy(const VectorX& held_forces) override;
   [[nodiscard]] std::size_t memory_bytes() const override;
 

@@ -2,6 +2,7 @@
 
 /// What a body that tears looks like to ParaView: section "Tearing" of docs/results.md.
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct TornState {
   const response::ElasticBody* body = nullptr;
   const VectorX* u = nullptr;    ///< m, 3 per node
   std::span<const TetId> local;  ///< tets of the local objects
+  /// Cauchy stress of a tet in the solve, Pa, of a body of large strain; empty: by small strains.
+  std::function<Mat3(TetId)> stress = {};
 };
 
 /// PointData displacement, reaction, node_alive, original_node; CellData those of fields_of_tets (0 for tets out of

@@ -2,40 +2,13 @@
 
 #include <algorithm>
 
-#include "mesh/quality.h"
-#include "model/stabilisation.h"
 #include "scene/body.h"
+#include "scene/model_choice.h"
 #include "scene/supports.h"
 #include "scene/tractions.h"
 
 namespace rhexis::scene {
 namespace {
-
-/// The stabilisation smooths lambda over a length; above this fraction of the body's thickness it smooths what is real.
-constexpr double kMostSmoothing = 0.25;
-
-model::ModelSettings choose_settings(const Scene& scene, const mesh::TetMesh& mesh, Problem& problem) {
-  model::ModelSettings settings{.kind = scene.model.kind,
-                                .elastic = scene.material.elastic,
-                                .law = scene.material.law,
-                                .beta = 0.0,
-                                .initial_lambda = scene.model.initial_lambda,
-                                .corotated_tangent = scene.model.corotated_tangent};
-  if (settings.kind != model::ModelKind::hyperelastic) return settings;
-  settings.beta = scene.model.beta ? *scene.model.beta : model::auto_beta(settings.law);
-  if (!scene.model.beta) problem.notes.push_back(fmt::format("beta = {:.4g}, chosen from the material", settings.beta));
-  if (settings.beta > 0.0) {
-    const double reach = model::smoothing_length(mesh, settings.law, settings.beta);
-    const double thickness = mesh::thickness(mesh);
-    if (reach > kMostSmoothing * thickness)
-      problem.warnings.push_back(fmt::format(
-          "{}: beta = {:.4g} smooths lambda over {:.3g} m, more than a quarter of the body's thickness of {:.3g} m "
-          "({} would resolve more)",
-          scene.file, settings.beta, reach, thickness,
-          scene.model.beta ? "a smaller beta or a finer mesh" : "a finer mesh"));  // below auto the body locks
-  }
-  return settings;
-}
 
 Expected<model::Loading> make_loading(const Scene& scene, const Body& body, const model::DisplacementSpace& space) {
   model::Loading loading;
@@ -94,7 +67,7 @@ Expected<Problem> build_problem(const Scene& scene) {
 
   Expected<Body> body = make_body(scene, problem.notes);
   if (!body) return fail(std::move(body.error()));
-  problem.settings = choose_settings(scene, body->mesh, problem);
+  problem.settings = choose_model(scene, body->mesh, problem.notes, problem.warnings);
   problem.model = model::make_model(body->mesh, problem.settings);
   Expected<model::Loading> loading = make_loading(scene, *body, problem.model->space());
   if (!loading) return fail(std::move(loading.error()));

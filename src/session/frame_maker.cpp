@@ -101,7 +101,7 @@ wire::BodyT FrameMaker::body(const Interaction& interaction) {
   wire::BodyT out;
   out.scene = of.scene.file;
   out.title = of.problem.title;
-  out.model = "linear";
+  out.model = tear.model_name();
   out.epoch = ++epoch_;
   out.topology = static_cast<std::uint32_t>(tear.body().topology());
   out.nodes = static_cast<std::uint32_t>(mesh.node_count());
@@ -174,7 +174,8 @@ wire::StateT FrameMaker::state(const Interaction& interaction, const haptics::Ha
   out.time = 1e-3 * static_cast<double>(interaction.tick());
   surface_displacement(of.surface, u, out.displacement);
   out.field = field_;
-  values_.find(field_, tear.body(), tear.settings().body.elastic, of.surface, u, out.values);
+  values_.find(
+      field_, tear.body(), [&](TetId tet) { return tear.stress(tet, u); }, of.surface, u, out.values);
   if (tear.hand().holds()) {
     if (const auto face = held_face(tear.hand().point(), tear.body(), of.surface)) {
       out.held = true;

@@ -30,7 +30,7 @@ Expected<void> Hand::grasp(const mesh::TornMesh& body, const Vec3& at, response:
     return fail("nothing is left to hold: no piece of the body has a support");
   }
   mode_ = mode;
-  response.grasp(nodes());
+  response.hold(*point_, mode_);
   if (is_supported(response.compliance())) {
     let_go(response);
     return fail("a support holds the point that the hand takes hold of", "a point away from every [[support]]");
@@ -53,12 +53,15 @@ void Hand::follow(const response::Response& response) {
   update_forces();
 }
 
-void Hand::move(const Vec3& by) {
+response::MoveReport Hand::move(const Vec3& by, response::Response& response) {
   const Vec3 from = at_;
   const Vec3 before = force();
   at_ = start_ + by;
+  response::MoveReport report = response.move(at_);
+  if (!response.is_linear() && point_) law_ = law_by(response);
   update_forces();
   work_ -= 0.5 * (before + force()).dot(at_ - from);
+  return report;
 }
 
 std::span<const NodeId> Hand::nodes() const {

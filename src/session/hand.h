@@ -23,8 +23,8 @@ class Hand {
   void let_go(response::Response& response);
   /// The response has changed: the same place of the hand, another force.
   void follow(const response::Response& response);
-  /// Displaced by `by` (m) from where it took hold.
-  void move(const Vec3& by);
+  /// Displaced by `by` (m) from where it took hold; the body comes along, as far as it does.
+  response::MoveReport move(const Vec3& by, response::Response& response);
 
   [[nodiscard]] bool holds() const { return point_.has_value(); }
   /// Only while it holds.
@@ -42,7 +42,8 @@ class Hand {
   [[nodiscard]] Vec3 force() const;
   /// N, on the body, 3 per held node.
   [[nodiscard]] const VectorX& nodal_forces() const { return nodal_forces_; }
-  /// J, on the body, since the beginning: exact while the body stays the same, since force is linear along the way.
+  /// J, on the body, since the beginning, by the mean of the forces before and after each move: exact for a linear body
+  /// while it stays the same.
   [[nodiscard]] double work() const { return work_; }
 
  private:

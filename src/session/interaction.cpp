@@ -68,10 +68,11 @@ void Interaction::move_body() {
   const bool held = tear().hand().holds();
   const TickReport report = tear().tick(
       by_, [this](const AdvanceRecord& advance) { tell_of(advance); }, 1);
-  settled_ = report.advances == 0;
-  tearing_ = settled_ ? 0 : tearing_ + 1;
-  if (!report.trouble.empty() && report.trouble != last_trouble_) listener_.says(wire::Level::warning, report.trouble);
-  last_trouble_ = report.trouble;
+  settled_ = report.advances == 0 && report.at_rest;
+  tearing_ = report.advances == 0 ? 0 : tearing_ + 1;
+  const std::string& trouble = report.trouble.empty() ? report.late : report.trouble;
+  if (!trouble.empty() && trouble != last_trouble_) listener_.says(wire::Level::warning, trouble);
+  if (!trouble.empty() || settled_) last_trouble_ = trouble;
   if (held && report.let_go) {
     torn_off_ = true;
     script_.end();

@@ -102,6 +102,12 @@ void Interaction::undo() {
 void Interaction::compare() {
   tear().stop_comparing();
   if (!compares_) return;
+  if (!tear().is_linear()) {
+    compares_ = false;
+    listener_.says(wire::Level::info,
+                   "a record is of a body of small strains: only model \"linear\" is held against one");
+    return;
+  }
   const scene::TearProblem& problem = body_->problem;
   response::SharedRecord record;
   if (!body_->start.record) {

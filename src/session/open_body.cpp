@@ -34,7 +34,7 @@ std::uint64_t fingerprint_of(const scene::TearProblem& problem) {
 
 Expected<std::unique_ptr<OpenBody>> start_body(SceneChoice scene, scene::TearProblem problem,
                                                response::SharedRecord record) {
-  Expected<TearStart> start = start_tear(problem, std::move(record));
+  Expected<TearStart> start = start_tear(problem, std::move(record), Pace::goes_along);
   if (!start) return fail(std::move(start.error()));
   SurfaceTracker surface(start->tear->body());
   const std::uint64_t intact = fingerprint_of(problem);

@@ -5,10 +5,23 @@
 namespace rhexis::session {
 namespace {
 
-TearSettings settings_of(const scene::TearProblem& problem, response::SharedRecord record) {
+/// Frames of a tick that waits, and the relative residual that it waits for.
+constexpr int kMostFrames = 60;
+constexpr double kScriptTolerance = 1e-6;
+
+TearSettings settings_of(const scene::TearProblem& problem, response::SharedRecord record, Pace pace) {
   const scene::FractureSettings& fracture = problem.fracture;
+  solver::LiveOptions live;
+  if (pace == Pace::waits) live.tolerance = kScriptTolerance;
+  std::optional<model::ModelSettings> large_strain;
+  if (problem.model.kind != model::ModelKind::linear) large_strain = problem.model;
   return {
       .body = problem.body,
+      .large_strain = large_strain,
+      .pressures = problem.pressures,
+      .solver = problem.solver,
+      .live = live,
+      .frames = pace == Pace::waits ? kMostFrames : 1,
       .tears = problem.tears,
       .criterion = fracture.criterion.value_or(""),
       .strength = fracture.strength,
@@ -25,7 +38,7 @@ std::string placed(const scene::Place& place, const std::string& text) { return 
 
 }  // namespace
 
-Expected<TearStart> start_tear(const scene::TearProblem& problem, response::SharedRecord record) {
+Expected<TearStart> start_tear(const scene::TearProblem& problem, response::SharedRecord record, Pace pace) {
   TearStart start;
   if (problem.interaction.response == "recorded") {
     Expected<response::SharedRecord> read = record ? std::move(record) : load_record(problem);
@@ -33,7 +46,7 @@ Expected<TearStart> start_tear(const scene::TearProblem& problem, response::Shar
     start.record = std::move(*read);
   }
   Expected<std::unique_ptr<TearSession>> made =
-      TearSession::make(problem.mesh, settings_of(problem, start.record), problem.cracks);
+      TearSession::make(problem.mesh, settings_of(problem, start.record, pace), problem.cracks);
   if (!made) {
     const scene::Place& place = problem.fracture.place;
     return fail(made.error().at(place.file ? *place.file : "", place.line));

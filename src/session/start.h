@@ -18,9 +18,15 @@ struct TearStart {
   std::vector<std::string> warnings;  ///< one line each, placed
 };
 
+/// Who goes on when a body of large strain is a few frames behind the hand.
+enum class Pace {
+  waits,      ///< a script: a tick ends when the body is in equilibrium
+  goes_along  ///< somebody who holds it: a tick is a frame
+};
+
 /// Reads the record that the scene's response needs, unless `record` is it; cuts the first cracks, factors, and takes
 /// hold of the point of every pull once. Errors are placed; those of the record as load_record.
-[[nodiscard]] Expected<TearStart> start_tear(const scene::TearProblem& problem,
-                                             response::SharedRecord record = nullptr);
+[[nodiscard]] Expected<TearStart> start_tear(const scene::TearProblem& problem, response::SharedRecord record = nullptr,
+                                             Pace pace = Pace::waits);
 
 }  // namespace rhexis::session

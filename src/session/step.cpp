@@ -35,15 +35,27 @@ TickReport TearSession::tick(const Vec3& hand, const Observer& observer, int mos
   TickReport report;
   if (hand != hand_at_) round_ = {};
   hand_at_ = hand;
-  hand_.move(hand);
+  move_body();
   if (settings_.tears) tear(report, observer, most_advances);
   report.force = hand_.force();
+  report.at_rest = moved_.at_rest && !has_torn_;
+  report.late = moved_.late;
   return report;
+}
+
+void TearSession::move_body() {
+  moved_ = hand_.move(hand_at_, *response_);
+  has_torn_ = false;
 }
 
 void TearSession::tear(TickReport& report, const Observer& observer, int most_advances) {
   solve_local_objects();
   while (report.advances < most_advances && report.trouble.empty()) {
+    if (has_torn_ && !is_linear()) {
+      move_body();
+      solve_local_objects();
+    }
+    if (!moved_.near) break;  // its stress says nothing yet: the next tick goes on from here
     if (round_.next < cracks_.size()) {
       const std::size_t crack = round_.next++;
       if (const std::optional<Judged> judged = judge(crack))
@@ -167,7 +179,10 @@ bool TearSession::take(Change change, TickReport& report, const Observer& observ
     record.wait_seconds = followed.wait_seconds;
     if (!followed.ok) {
       take_back(before);
-      report.trouble = "the torn body is not stable: a part of it can move freely (hold it by another [[support]])";
+      report.trouble =
+          followed.why.empty()
+              ? "the torn body is not stable: a part of it can move freely (hold it by another [[support]])"
+              : followed.why;
       return false;
     }
     made_.push_back(change.advance);
@@ -181,6 +196,7 @@ bool TearSession::take(Change change, TickReport& report, const Observer& observ
     record.record = response_->record_use();
   }
   cracks_before_.push_back(before);
+  has_torn_ = true;
 
   watch.restart();
   make_local_objects();

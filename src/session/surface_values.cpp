@@ -5,8 +5,6 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "element/linear_tet.h"
-
 namespace rhexis::session {
 namespace {
 
@@ -52,7 +50,7 @@ void surface_displacement(const SurfaceTracker& surface, const VectorX& u, std::
   }
 }
 
-void SurfaceValues::find(wire::Field field, const mesh::TornMesh& body, const material::Elastic& elastic,
+void SurfaceValues::find(wire::Field field, const mesh::TornMesh& body, const std::function<Mat3(TetId)>& stress,
                          const SurfaceTracker& surface, const VectorX& u, std::vector<float>& out) {
   const std::vector<NodeId>& nodes = surface.nodes();
   out.clear();
@@ -69,15 +67,11 @@ void SurfaceValues::find(wire::Field field, const mesh::TornMesh& body, const ma
   volume_.assign(body.mesh().node_count(), 0.0);
   for (const TetId tet : tets_) {
     const mesh::Tet& corner = body.mesh().tet(tet);
-    const element::LinearTet shape = element::make_linear_tet(mesh::corners(body.mesh(), tet));
-    double value = 0.0;
-    if (body.is_solved(tet)) {
-      const std::array<Vec3, 4> at{moved(corner[0]), moved(corner[1]), moved(corner[2]), moved(corner[3])};
-      value = value_of(field, element::small_strain_stress(elastic, element::displacement_gradient(shape, at)));
-    }
+    const double volume = mesh::signed_volume(body.mesh(), tet);
+    const double value = body.is_solved(tet) ? value_of(field, stress(tet)) : 0.0;
     for (const NodeId node : corner) {
-      sum_[node.index()] += value * shape.volume;
-      volume_[node.index()] += shape.volume;
+      sum_[node.index()] += value * volume;
+      volume_[node.index()] += volume;
     }
   }
   for (std::size_t vertex = 0; vertex < nodes.size(); ++vertex) {

@@ -3,9 +3,9 @@
 /// What a client sees of the body at one moment: where its surface is, and a field on it.
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
-#include "material/parameters.h"
 #include "mesh/torn_mesh.h"
 #include "session/surface_tracker.h"
 #include "wire/frame.h"
@@ -20,7 +20,8 @@ class SurfaceValues {
  public:
   /// Of `field` for the displacement `u`: out has one value a vertex, m or Pa; empty for Field::none. A stress is the
   /// average over the tets around the vertex that are alive, weighted by volume; no stress is in a frozen piece.
-  void find(wire::Field field, const mesh::TornMesh& body, const material::Elastic& elastic,
+  /// `stress`: Cauchy, Pa, of a tet in the solve.
+  void find(wire::Field field, const mesh::TornMesh& body, const std::function<Mat3(TetId)>& stress,
             const SurfaceTracker& surface, const VectorX& u, std::vector<float>& out);
   /// The body has another topology, or is another.
   void body_changed() { tets_.clear(); }

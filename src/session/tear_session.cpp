@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "response/exact_response.h"
+#include "response/live_response.h"
 #include "response/recorded_response.h"
 
 namespace rhexis::session {
@@ -53,7 +54,17 @@ Expected<std::unique_ptr<TearSession>> TearSession::make(const mesh::TetMesh& me
   for (const scene::CrackSettings& crack : cracks)
     if (Expected<void> done = session->open(crack); !done) return fail(std::move(done.error()));
 
-  session->response_ = session->make_response(all.record);
+  if (all.large_strain) {
+    Expected<std::unique_ptr<response::LiveResponse>> live =
+        response::LiveResponse::make(session->body(), {.body = {all.body, *all.large_strain, all.pressures},
+                                                       .live = all.live,
+                                                       .frames = all.frames,
+                                                       .solver = all.solver});
+    if (!live) return fail(std::move(live.error()));
+    session->response_ = std::move(*live);
+  } else {
+    session->response_ = session->make_response(all.record);
+  }
   if (!session->response_)
     return fail("the cracked body is not stable: a part of it can move freely", "hold it by another [[support]]");
   session->make_local_objects();
@@ -70,6 +81,7 @@ std::unique_ptr<response::Response> TearSession::make_response(const response::S
 
 bool TearSession::compare(const response::SharedRecord& record) {
   comparison_.reset();
+  if (!is_linear()) return false;
   std::unique_ptr<response::Response> other = make_response(record);
   if (!other) return false;
   comparison_.emplace(std::move(other));
@@ -165,13 +177,33 @@ void TearSession::solve_local_objects() {
     const auto solve = [&](const VectorX& forces, double loads, VectorX& out) {
       response_->displacement(nodes, forces, loads, out);
     };
-    local_basis_[k].displacement(hand_.nodal_forces(), solve, u);
-    if (solved_alone_[k]) {
+    by_basis(local_basis_[k], solve, u);
+    if (!is_linear()) {
+      local_[k].take(u, [this](fracture::TetStress& tet) { set_own_stress(tet); });
+    } else if (solved_alone_[k]) {
       RHEXIS_CHECK(local_[k].solve(u), "local object {} has been factored", k);
     } else {
       local_[k].take(u);
     }
   }
+}
+
+void TearSession::by_basis(response::ForceBasis& basis, const response::ForceBasis::Solve& solve, VectorX& u) const {
+  if (is_linear()) {
+    basis.displacement(hand_.nodal_forces(), solve, u);
+  } else {
+    solve(hand_.nodal_forces(), 1.0, u);
+  }
+}
+
+void TearSession::set_own_stress(fracture::TetStress& tet) const {
+  const response::DeformedTet deformed = response_->deformed(tet.tet);
+  fracture::set_turned_back(tet, deformed.F, deformed.stress);
+}
+
+Mat3 TearSession::stress(TetId tet, const VectorX& u) const {
+  return is_linear() ? fracture::stress_of(body(), settings_.body.elastic, tet, u).stress
+                     : response_->deformed(tet).stress;
 }
 
 void TearSession::add_local_objects(VectorX& u) const {
@@ -192,6 +224,7 @@ std::vector<fracture::TetStress> TearSession::surface_stresses(const VectorX& u)
   std::vector<fracture::TetStress> out;
   for (const TetId tet : surface_tets_) {
     out.push_back(fracture::stress_of(body(), settings_.body.elastic, tet, u));
+    if (!is_linear()) set_own_stress(out.back());
     out.back().at_hand = at_hand[tet.index()] != 0;
   }
   return out;
@@ -238,7 +271,7 @@ void TearSession::displacement(response::ForceBasis& basis, VectorX& u) {
   const auto solve = [&](const VectorX& forces, double loads, VectorX& out) {
     response_->whole_displacement(forces, loads, out);
   };
-  basis.displacement(hand_.nodal_forces(), solve, u);
+  by_basis(basis, solve, u);
   add_local_objects(u);
 }
 

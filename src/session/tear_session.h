@@ -32,7 +32,9 @@ struct TickReport {
   Vec3 force = Vec3::Zero();  ///< N, on the hand, after what tore
   int advances = 0;           ///< made in this tick
   bool let_go = false;        ///< what was held has come off, or belongs to a piece without support
+  bool at_rest = true;        ///< another tick with the hand where it is would change nothing
   std::string trouble;  ///< empty; else what kept the tick from being finished: the body is as before that advance
+  std::string late;     ///< empty; else why a body of large strain is not where the hand is
 };
 
 class TearSession {
@@ -60,7 +62,7 @@ class TearSession {
 
   /// From now on the force of another response to the same tears is there beside: the recorded one of `record`, or the
   /// exact one (null). It has no part in what happens. False: the torn body has a free motion, and the exact one no
-  /// answer.
+  /// answer; or it is one of large strain, which has no other.
   bool compare(const response::SharedRecord& record);
   void stop_comparing() { comparison_.reset(); }
   /// N, on the hand where it is; empty: nothing is compared, or the other response has no answer any more.
@@ -69,6 +71,13 @@ class TearSession {
   [[nodiscard]] std::optional<response::RecordUse> record_use() const { return response_->record_use(); }
 
   [[nodiscard]] const TearSettings& settings() const { return settings_; }
+  [[nodiscard]] bool is_linear() const { return response_->is_linear(); }
+  [[nodiscard]] std::string_view model_name() const {
+    const auto kind = settings_.large_strain ? settings_.large_strain->kind : model::ModelKind::linear;
+    return model::kModelNames[static_cast<std::size_t>(kind)];
+  }
+  /// Cauchy stress of a tet in the solve, Pa; `u`: what displacement() gives.
+  [[nodiscard]] Mat3 stress(TetId tet, const VectorX& u) const;
   [[nodiscard]] const mesh::TornMesh& body() const { return torn_.mesh(); }
   [[nodiscard]] const Hand& hand() const { return hand_; }
   [[nodiscard]] const std::vector<fracture::Crack>& cracks() const { return cracks_; }
@@ -119,6 +128,9 @@ class TearSession {
   void make_local_objects();
   void solve_local_objects();
   [[nodiscard]] std::vector<fracture::TetStress> surface_stresses(const VectorX& u) const;
+  void set_own_stress(fracture::TetStress& tet) const;
+  void by_basis(response::ForceBasis& basis, const response::ForceBasis::Solve& solve, VectorX& u) const;
+  void move_body();
   [[nodiscard]] double radius_of(std::size_t crack) const;
   [[nodiscard]] std::vector<response::Focus> foci() const;
   /// Of the body as it is: of this record, or the exact one. nullptr: it has a free motion.
@@ -147,6 +159,8 @@ class TearSession {
   std::vector<AdvanceRecord> advances_;
   Hand hand_;
   Vec3 hand_at_ = Vec3::Zero();  ///< m, as of the last tick
+  response::MoveReport moved_;   ///< how far the body has come there
+  bool has_torn_ = false;        ///< since the body was moved
   /// One after the other the cracks are judged at a place of the hand, round by round until none has torn in a round.
   struct Round {
     std::size_t next = 0;  ///< crack to be judged

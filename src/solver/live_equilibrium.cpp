@@ -25,45 +25,79 @@ constexpr int kMostFirstIterations = 200;
 constexpr int kAnswerRounds = 4;
 /// Of the body's size: what takes less force to move the hand by is near to rest, and a residual is held against that.
 constexpr double kSmallMove = 0.01;
-/// Frames that may be late in a row.
-constexpr int kMostLateFrames = 20;
-/// Corrections of a frame that is late.
+/// Late frames in a row that do not lessen the residual by kProgress, after which the state is given up.
+constexpr int kMostIdleFrames = 20;
+constexpr double kProgress = 0.9;
+/// Corrections of a frame that is late, and how much further each is solved.
 constexpr int kLateCorrections = 2;
+constexpr int kLateIterations = 3;
 /// Iterations more than when it was new, from which on a preconditioner is made anew at the present state.
 constexpr int kWornIterations = 2;
 
 }  // namespace
 
-LiveEquilibrium::LiveEquilibrium(const model::Model& model, const model::Loading& loading, model::State state,
+LiveEquilibrium::LiveEquilibrium(std::shared_ptr<const model::Model> model, model::Loading loading, model::State state,
                                  LiveOptions options)
-    : model_(model),
-      loading_(loading),
+    : model_(std::move(model)),
+      loading_(std::move(loading)),
       options_(options),
-      free_(model::free_dofs(model.space(), loading)),
-      scratch_(model.make_scratch()),
+      free_(model::free_dofs(model_->space(), loading_)),
       state_(std::move(state)),
-      tangent_(model.make_tangent()),
-      linear_(model, free_, state_) {
-  const auto dofs = static_cast<Eigen::Index>(model.space().dof_count());
-  const auto pressures = static_cast<Eigen::Index>(model.pressure_unknowns());
+      linear_(model_, free_, state_) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : model_->space().nodes) box.extend(x);
+  size_of_body_ = box.diagonal().norm();
+  make_room();
+}
+
+void LiveEquilibrium::make_room() {
+  scratch_ = model_->make_scratch();
+  tangent_ = model_->make_tangent();
+  const auto dofs = static_cast<Eigen::Index>(model_->space().dof_count());
+  const auto pressures = static_cast<Eigen::Index>(model_->pressure_unknowns());
   for (VectorX* vector : {&residual_.u, &external_, &internal_, &du_, &rhs_u_}) vector->setZero(dofs);
   for (VectorX* vector : {&residual_.lambda, &dlambda_, &rhs_lambda_}) vector->setZero(pressures);
-  Eigen::AlignedBox3d box;
-  for (const Vec3& x : model.space().nodes) box.extend(x);
-  size_of_body_ = box.diagonal().norm();
-  for (const model::PrescribedDof& support : loading.supports) state_.u[support.dof] = support.value;
+  for (const model::PrescribedDof& support : loading_.supports) state_.u[support.dof] = support.value;
   trial_ = state_;
   now_ = evaluate(state_);
   good_ = state_;
+  idle_frames_ = 0;
+  cautious_ = false;
+}
+
+void LiveEquilibrium::follow(std::shared_ptr<const model::Model> model, model::Loading loading, model::State state,
+                             const TornModel& torn) {
+  model_ = std::move(model);
+  loading_ = std::move(loading);
+  state_ = std::move(state);
+  free_ = model::free_dofs(model_->space(), loading_);
+  linear_.follow(model_, free_, state_, torn);
+  make_room();
+  if (!held_) return;
+  linear_.set_constraint(held_);
+  build_tangent();
+  for (VectorX& u : answer_u_) {
+    const Eigen::Index nodes = u.size() / 3;
+    u.conservativeResize(state_.u.size());
+    for (std::size_t i = 0; i < torn.copied.size(); ++i)
+      u.segment<3>(3 * (nodes + static_cast<Eigen::Index>(i))) = u.segment<3>(3 * Eigen::Index{torn.copied[i]});
+  }
+  for (const std::int32_t parent : torn.copied)
+    answer_rotation_.push_back(answer_rotation_[static_cast<std::size_t>(parent)]);
+  turn_answers();
+  for (int j = 0; j < 3; ++j) refresh_answer(j, options_.worn_answer, options_.iterations);
+  update_compliance();
+  now_ = evaluate(state_);
+  correct_force();
 }
 
 Vec3 LiveEquilibrium::point() const { return held_ ? held_->of(state_.u) : Vec3::Zero(); }
 
 LiveEquilibrium::Trial LiveEquilibrium::evaluate(const model::State& state) {
   Trial out;
-  out.evaluation = model_.residual(state, *scratch_, residual_);
+  out.evaluation = model_->residual(state, *scratch_, residual_);
   internal_ = residual_.u;
-  model::external_force(loading_, model_.space(), state.u, 1.0, external_);
+  model::external_force(loading_, model_->space(), state.u, 1.0, external_);
   residual_.u -= external_;
   if (held_) {
     multiplier_ = held_->of(residual_.u) / held_->weight.squaredNorm();
@@ -80,12 +114,12 @@ LiveEquilibrium::Trial LiveEquilibrium::evaluate(const model::State& state) {
 
 bool LiveEquilibrium::is_admissible(const Trial& trial) const {
   return trial.evaluation.finite && std::isfinite(trial.norm) &&
-         (model_.allows_inversion() || trial.evaluation.inverted_tets == 0);
+         (model_->allows_inversion() || trial.evaluation.inverted_tets == 0);
 }
 
 void LiveEquilibrium::build_tangent() {
-  model_.tangent(state_, *scratch_, tangent_);
-  model::subtract_load_stiffness(loading_, model_.space(), state_.u, 1.0, tangent_);
+  model_->tangent(state_, *scratch_, tangent_);
+  model::subtract_load_stiffness(loading_, model_->space(), state_.u, 1.0, tangent_);
   linear_.set_tangent(tangent_, state_);
 }
 
@@ -156,12 +190,12 @@ void LiveEquilibrium::hold(const HeldPoint& point) {
   linear_.set_constraint(held_);
   force_.setZero();
   build_tangent();
+  answer_rotation_ = linear_.rotation();
   for (int j = 0; j < 3; ++j) {
     answer_u_[static_cast<std::size_t>(j)].setZero(state_.u.size());
     answer_lambda_[static_cast<std::size_t>(j)].setZero(state_.lambda.size());
     refresh_answer(j, kFirstAnswer, kMostFirstIterations);
   }
-  answer_rotation_ = linear_.rotation();
   update_compliance();
   now_ = evaluate(state_);
 }
@@ -171,6 +205,8 @@ void LiveEquilibrium::let_go() {
   linear_.set_constraint(std::nullopt);
   force_.setZero();
   now_ = evaluate(state_);
+  good_ = state_;
+  idle_frames_ = 0;
 }
 
 LiveFrame LiveEquilibrium::step(const Vec3& hand) {
@@ -223,8 +259,9 @@ bool LiveEquilibrium::correct(LiveFrame& frame) {
   build_tangent();
   rhs_u_ = -residual_.u;
   rhs_lambda_ = -residual_.lambda;
-  const LiveSolve solve = linear_.solve(LiveLinear::Point::fixed, rhs_u_, rhs_lambda_, options_.forcing,
-                                        options_.iterations, du_, dlambda_);
+  const int most = (now_.relative > options_.late ? kLateIterations : 1) * options_.iterations;
+  const LiveSolve solve =
+      linear_.solve(LiveLinear::Point::fixed, rhs_u_, rhs_lambda_, options_.forcing, most, du_, dlambda_);
   frame.linear_iterations += solve.iterations;
   if (iterations_when_new_ == 0) iterations_when_new_ = std::max(1, solve.iterations);
   worn_ = worn_ || solve.iterations >= iterations_when_new_ + kWornIterations || solve.truncated;
@@ -233,7 +270,7 @@ bool LiveEquilibrium::correct(LiveFrame& frame) {
     trial_.u = state_.u + part * du_;
     trial_.lambda = state_.lambda + part * dlambda_;
     const Trial next = evaluate(trial_);
-    if (!is_admissible(next) || next.norm > kGrowth * now_.norm) continue;
+    if (!is_admissible(next) || next.norm > (cautious_ ? 1.0 : kGrowth) * now_.norm) continue;
     std::swap(state_, trial_);
     now_ = next;
     ++frame.corrections;
@@ -244,17 +281,24 @@ bool LiveEquilibrium::correct(LiveFrame& frame) {
   return false;
 }
 
-/// A state that does not find back is given up for the last one that was near to equilibrium.
+/// A state that does not find back is given up for the last one that was near to equilibrium, or from which it set out.
 void LiveEquilibrium::keep_good(LiveFrame& frame) {
   if (now_.relative <= options_.late) {
     good_ = state_;
-    late_frames_ = 0;
-  } else if (++late_frames_ >= kMostLateFrames) {
+    idle_frames_ = 0;
+    cautious_ = false;
+    return;
+  }
+  if (idle_frames_ == 0 || now_.norm < kProgress * least_) {
+    least_ = now_.norm;
+    idle_frames_ = 1;
+  } else if (++idle_frames_ > kMostIdleFrames) {
     state_ = good_;
     now_ = evaluate(state_);
-    late_frames_ = 0;
+    idle_frames_ = 0;
+    cautious_ = !cautious_;
+    worn_ = frame.gave_up = true;
     frame.trouble = "no equilibrium near: back to the last one";
-    worn_ = true;
   }
 }
 
@@ -268,7 +312,8 @@ LiveFrame LiveEquilibrium::advance(const Vec3* hand) {
   frame.reached = hand == nullptr || now_.relative <= options_.late;
   if (hand != nullptr && frame.reached && !follow(*hand, frame)) return frame;
   const int most = now_.relative > options_.late ? kLateCorrections : options_.corrections;
-  while (frame.corrections < most && now_.relative > options_.tolerance) {
+  const double tolerance = held_ ? options_.tolerance : std::min(options_.tolerance, options_.at_rest);
+  while (frame.corrections < most && now_.relative > tolerance) {
     if (!correct(frame)) break;
   }
   if (held_ && frame.corrections > 0) {

@@ -25,6 +25,7 @@ namespace rhexis::solver {
 struct LiveOptions {
   int corrections = 1;       ///< Newton corrections a frame at most
   double tolerance = 1e-4;   ///< relative residual below which a frame needs no (further) correction
+  double at_rest = 1e-7;     ///< the same where nothing is held and there is no haste, if it is the smaller
   double forcing = 0.3;      ///< relative residual of the linear solve of a correction
   int iterations = 6;        ///< of conjugate gradients in it, at most
   double late = 0.1;         ///< relative residual above which the hand is not followed further: late, not wrong
@@ -37,13 +38,20 @@ struct LiveFrame {
   int linear_iterations = 0;
   double residual = 0.0;   ///< relative to internal and external force, after the frame
   bool refreshed = false;  ///< a preconditioner that was made in the background was taken up
+  bool gave_up = false;    ///< it did not come nearer to equilibrium for long: back to where it began
   std::string trouble;     ///< one line, empty when there was none
 };
 
 class LiveEquilibrium {
  public:
-  /// Model and loading (at t = 1) outlive this. Starts from `state`.
-  LiveEquilibrium(const model::Model& model, const model::Loading& loading, model::State state, LiveOptions options);
+  /// `loading` counts at t = 1. Starts from `state`, with the supports where they are to be.
+  LiveEquilibrium(std::shared_ptr<const model::Model> model, model::Loading loading, model::State state,
+                  LiveOptions options);
+
+  /// The body has torn: another model and loading of it, of the same tets and more nodes, that starts from `state`,
+  /// which has to be admissible. What the hand holds it goes on holding; the caller lets go what has come off.
+  void follow(std::shared_ptr<const model::Model> model, model::Loading loading, model::State state,
+              const TornModel& torn);
 
   /// The hand takes hold; its displacement counts from the reference position of the point. No node of it may be held
   /// by a support: RHEXIS_CHECK.
@@ -58,6 +66,10 @@ class LiveEquilibrium {
   LiveFrame settle();
 
   [[nodiscard]] const model::State& state() const { return state_; }
+  [[nodiscard]] const model::Loading& loading() const { return loading_; }
+  /// Of the residual to the forces, as LiveFrame has it.
+  [[nodiscard]] double residual() const { return now_.relative; }
+  [[nodiscard]] std::size_t memory_bytes() const { return linear_.memory_bytes() + model_->memory_bytes(); }
   /// Displacement of the held point, m.
   [[nodiscard]] Vec3 point() const;
   /// Of the hand on the body, N, right to second order.
@@ -73,6 +85,7 @@ class LiveEquilibrium {
     double norm = 0.0;  ///< N, of the residual on the free dofs
     double relative = 0.0;
   };
+  void make_room();
   LiveFrame advance(const Vec3* hand);
   bool follow(const Vec3& hand, LiveFrame& frame);
   bool correct(LiveFrame& frame);
@@ -87,8 +100,8 @@ class LiveEquilibrium {
   void update_compliance();
   void correct_force();
 
-  const model::Model& model_;
-  const model::Loading& loading_;
+  std::shared_ptr<const model::Model> model_;
+  model::Loading loading_;
   LiveOptions options_;
   linalg::FreeDofs free_;
   std::unique_ptr<model::Scratch> scratch_;
@@ -112,8 +125,10 @@ class LiveEquilibrium {
   int next_column_ = 0;
 
   model::State trial_;
-  model::State good_;  ///< the last one near to equilibrium
-  int late_frames_ = 0;
+  model::State good_;            ///< the last one near to equilibrium
+  double least_ = 0.0;           ///< N, residual of the frames since it was late, the least
+  int idle_frames_ = 0;          ///< late frames in a row that have not lessened it
+  bool cautious_ = false;        ///< since it gave up: no step that lets the residual grow
   bool worn_ = false;            ///< the frame has found the preconditioner wanting
   int iterations_when_new_ = 0;  ///< of the first correction with it; 0: there was none
   double size_of_body_ = 0.0;    ///< m

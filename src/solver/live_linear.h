@@ -10,7 +10,6 @@
 /// share.
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -47,6 +46,19 @@ struct HeldPoint {
   }
 };
 
+/// What a tear did to a model that follows it.
+struct TornModel {
+  std::vector<std::int32_t> copied;   ///< the node that each appended node is a copy of
+  std::vector<std::int32_t> touched;  ///< tets that went, moved or took other nodes; ascending
+
+  /// Another one after it.
+  void add(const TornModel& next);
+};
+
+/// Iterations of the caller after which a preconditioner that was begun beside him is taken up: by then it is ready,
+/// mostly.
+inline constexpr int kRefreshWork = 60;
+
 struct LiveSolve {
   int iterations = 0;
   bool truncated = false;  ///< a direction of negative curvature was met, and what there was before it is the answer
@@ -54,9 +66,14 @@ struct LiveSolve {
 
 class LiveLinear {
  public:
-  /// Both outlive this. Prepares the preconditioner at `state`.
-  LiveLinear(const model::Model& model, const linalg::FreeDofs& free, const model::State& state);
+  /// Prepares the preconditioner at `state`.
+  LiveLinear(std::shared_ptr<const model::Model> model, linalg::FreeDofs free, const model::State& state);
   ~LiveLinear();
+
+  /// The body has torn: another model of it, of the same tets and more nodes, at `state`. The preconditioner follows
+  /// what was touched, and so will one that is under way.
+  void follow(std::shared_ptr<const model::Model> model, linalg::FreeDofs free, const model::State& state,
+              const TornModel& torn);
 
   /// The matrix of the solves that follow, the tangent at `state`; stays with the caller. The preconditioner turns with
   /// the body.
@@ -73,30 +90,32 @@ class LiveLinear {
                   VectorX& xp);
   /// Starts to prepare another preconditioner at `state` beside the caller, unless one is under way.
   void refresh(const model::State& state);
-  /// Takes it up if it is there. True: it was.
+  /// Takes it up when it is due, that is after kRefreshWork of the caller's iterations, and waits for it then: a count
+  /// and no clock, so that the same input gives the same bits. True: it was.
   bool take_refreshed();
-  [[nodiscard]] bool is_refreshing() const { return task_.under_way() && !ready_; }
+  [[nodiscard]] bool is_refreshing() const { return task_.under_way(); }
+  [[nodiscard]] std::size_t memory_bytes() const;
 
  private:
   struct Preconditioner;
-  void set_patches(const linalg::SaddleMatrix& K);
-  /// `before`: a factor of the same elements, whose order is taken; null: none.
-  [[nodiscard]] std::shared_ptr<const Preconditioner> prepare(const model::State& state,
-                                                              const linalg::FrontTree* before) const;
+  using Prepared = std::shared_ptr<const Preconditioner>;
+  /// `before`: of the same model, or null; its order of elimination is taken, and what depends on C alone.
+  [[nodiscard]] static Prepared prepare(const model::Model& model, const linalg::FreeDofs& free,
+                                        const model::State& state, const Preconditioner* before);
+  /// After the body has torn, at the present state. Null: it would not be definite.
+  [[nodiscard]] Prepared followed(const Preconditioner& before, const model::State& state, const TornModel& torn) const;
   void apply(const VectorX& x, VectorX& y);
   void precondition(const VectorX& r, VectorX& z);
   void project(VectorX& r) const;
   void solve_for_point();
   void turn();
 
-  const model::Model& model_;
-  const linalg::FreeDofs& free_;
+  std::shared_ptr<const model::Model> model_;
+  linalg::FreeDofs free_;
   linalg::ChebyshevInverse c_inverse_;
-  linalg::PressurePatches patches_;  ///< what depends on C alone
   const linalg::SaddleMatrix* K_ = nullptr;
-  std::shared_ptr<const Preconditioner> preconditioner_;
+  Prepared preconditioner_;
 
-  NodeRotations rotations_;
   std::vector<Mat3> rotation_;  ///< of each node at the tangent
   std::vector<Mat3> turn_;      ///< T, since the preconditioner's state
   VectorX turned_, solved_;
@@ -111,9 +130,11 @@ class LiveLinear {
   linalg::ChebyshevInverse::Work c_work_;
   linalg::FrontSolver::Work front_work_;
 
-  std::shared_ptr<const Preconditioner> refreshed_;
-  std::atomic<bool> ready_ = false;
-  BackgroundTask task_;  ///< writes the two above: it has to end before they do, so it stands last
+  int worked_ = 0;           ///< iterations since the refresh began
+  TornModel torn_since_;     ///< the same for the body
+  model::State state_then_;  ///< present state, where it has torn since
+  Prepared refreshed_;
+  BackgroundTask task_;  ///< writes the one above: it has to end before that does, so it stands last
 };
 
 }  // namespace rhexis::solver

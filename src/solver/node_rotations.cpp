@@ -27,11 +27,12 @@ Mat3 rotation_of(const Mat3& F) {
 
 }  // namespace
 
-NodeRotations::NodeRotations(const model::DisplacementSpace& space) : nodes_(space.node_count()) {
+NodeRotations::NodeRotations(const model::DisplacementSpace& space, std::span<const std::uint8_t> left_out)
+    : nodes_(space.node_count()) {
   RHEXIS_CHECK(space.order == 1, "order {}", space.order);
-  tets_.resize(space.connectivity.size() / 4);
-  for (std::size_t t = 0; t < tets_.size(); ++t) {
-    Tet& tet = tets_[t];
+  for (std::size_t t = 0; t < space.connectivity.size() / 4; ++t) {
+    if (!left_out.empty() && left_out[t] != 0) continue;
+    Tet& tet = tets_.emplace_back();
     for (std::size_t a = 0; a < 4; ++a) tet.node[a] = space.connectivity[4 * t + a];
     const auto X = [&](std::size_t a) -> const Vec3& { return space.nodes[static_cast<std::size_t>(tet.node[a])]; };
     Mat3 edges;

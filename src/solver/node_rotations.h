@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/vec.h"
@@ -19,8 +20,8 @@ namespace rhexis::solver {
 
 class NodeRotations {
  public:
-  /// Of a P1 space.
-  explicit NodeRotations(const model::DisplacementSpace& space);
+  /// Of a P1 space, without the tets where `left_out` is not zero; empty: of all.
+  explicit NodeRotations(const model::DisplacementSpace& space, std::span<const std::uint8_t> left_out = {});
 
   /// Per node the rotation of the mean deformation gradient of its tets, near enough for a preconditioner: T is regular
   /// in any case. The identity where that gradient is no positive number of volumes, and without a tet.

@@ -29,7 +29,7 @@ constexpr double kOracleTolerance = 1e-6;
 /// A soft rod, 20 mm thick and 60 mm long, held below and at a node of its side near the top.
 struct Rod {
   mesh::TetMesh mesh;
-  std::unique_ptr<model::Model> model;
+  std::shared_ptr<const model::Model> model;
   model::Loading loading;
   std::int32_t node = 0;
 
@@ -86,7 +86,7 @@ double median(std::vector<double> values) {
 }
 
 ordered_json one_row(const Rod& rod, double speed, const LiveModelsOptions& options) {
-  solver::LiveEquilibrium live(*rod.model, rod.loading, rod.model->initial_state(),
+  solver::LiveEquilibrium live(rod.model, rod.loading, rod.model->initial_state(),
                                {.corrections = options.corrections});
   live.hold({.node = {rod.node, 0, 0}, .weight = Vec3::UnitX(), .count = 1});
   std::vector<double> frame_ms;

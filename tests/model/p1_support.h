@@ -2,6 +2,10 @@
 
 /// Meshes, states and dense matrices for the tests of the models on linear tets.
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
 #include <ostream>
 #include <random>
 #include <string>
@@ -129,6 +133,14 @@ inline Evaluated evaluate(const model::Model& model, const model::State& state) 
   out.residual << residual.u, residual.lambda;
   out.tangent = dense(K);
   return out;
+}
+
+/// As a suite of tests over cases names them.
+inline std::string p1_case_name(const testing::TestParamInfo<P1Case>& tested) {
+  std::string name = tested.param.name;
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
+  return name;
 }
 
 }  // namespace rhexis::test

@@ -42,12 +42,7 @@ TEST_P(TetTangents, AddUpToTheTangent) {
   EXPECT_TRUE(coupling == K.B.values);  // one row a tet in either
 }
 
-INSTANTIATE_TEST_SUITE_P(All, TetTangents, testing::ValuesIn(p1_cases()), [](const auto& tested) {
-  std::string name = tested.param.name;
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(All, TetTangents, testing::ValuesIn(p1_cases()), p1_case_name);
 
 }  // namespace
 }  // namespace rhexis::test

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "model/stabilisation.h"
 #include "tests/scene/scene_text.h"
 #include "tests/support/replaced.h"
 
@@ -71,8 +72,9 @@ TEST(TearProblem, SaysWhatIsMissingOrCannotBe) {
        "s.toml: the scene does not say when the body tears (add a [fracture] with 'strength' or 'toughness')"},
       {"[[pull]]\nat = [0.10, 0.0, 0.005]\nby = [-0.12, 0.0, 0.0]\n", "",
        "s.toml: nothing pulls at the body (add a [[pull]])"},
-      {"\"linear\"", "\"corotated\"",
-       "s.toml:11: a body with model 'corotated' cannot be torn yet (kind = \"linear\")"},
+      {"\"linear\"", "\"taylor-hood\"",
+       "s.toml:11: a body with model 'taylor-hood' cannot be torn (\"linear\", \"corotated\", "
+       "\"geometrically-nonlinear\" or \"hyperelastic\")"},
       {"[fracture]", "[[pressure]]\nside = \"-x\"\nvalue = 10.0\n[fracture]",
        "s.toml:21: a pressure follows the surface, which the linear model cannot (a [[traction]] in a fixed "
        "direction)"},
@@ -98,13 +100,14 @@ Expected<TearProblem> build_for_hand(const std::string& text) {
 TEST(TearProblem, AHandOpensWhatAScriptCannotAndSaysWhatIsOtherThanWritten) {
   const std::string no_fracture = replaced(kPlate, "[fracture]\nstrength = 0.4e6\n", "");
   const std::string nothing = replaced(no_fracture, "[[pull]]\nat = [0.10, 0.0, 0.005]\nby = [-0.12, 0.0, 0.0]\n", "");
-  const Expected<TearProblem> bends = build_for_hand(replaced(nothing, "\"linear\"", "\"corotated\""));
+  const Expected<TearProblem> bends = build_for_hand(replaced(nothing, "\"linear\"", "\"taylor-hood\""));
   ASSERT_TRUE(bends.has_value()) << bends.error().message();
   EXPECT_FALSE(bends->tears);
   EXPECT_TRUE(bends->pulls.empty());
   EXPECT_THAT(bends->warnings,
               testing::ElementsAre("s.toml: the body bends and does not tear: there is no [fracture]",
-                                   "s.toml:11: model 'corotated' is not live yet: the body is opened as 'linear'"));
+                                   "s.toml:11: model 'taylor-hood' is not live: the body is opened as 'linear'"));
+  EXPECT_EQ(bends->model.kind, model::ModelKind::linear);
   const Expected<TearProblem> tears = build_for_hand(kPlate);
   ASSERT_TRUE(tears.has_value()) << tears.error().message();
   EXPECT_TRUE(tears->tears);
@@ -124,6 +127,41 @@ TEST(TearProblem, APressurePushesOnTheSurfaceAtRestForAHand) {
   EXPECT_LT((sum - Vec3(-0.5 + 0.024, 0.0, 0.0)).norm(), 1e-14) << sum.transpose();
 }
 
+TEST(TearProblem, ABodyOfLargeStrainIsTakenAsItIsWithWhatFollowsItsSurface) {
+  const std::string pressed = replaced(kPlate, "[fracture]", "[[pressure]]\nside = \"-x\"\nvalue = 10.0\n[fracture]");
+  const Expected<TearProblem> problem = build(replaced(pressed, "\"linear\"", "\"hyperelastic\""));
+  ASSERT_TRUE(problem.has_value()) << problem.error().message();
+  EXPECT_EQ(problem->model.kind, model::ModelKind::hyperelastic);
+  EXPECT_EQ(problem->model.beta, model::auto_beta(problem->model.law));
+  ASSERT_EQ(problem->pressures.size(), 1U);
+  EXPECT_EQ(problem->pressures[0].value, 10.0);
+  EXPECT_FALSE(problem->pressures[0].faces.empty());
+  Vec3 sum = Vec3::Zero();
+  for (Eigen::Index node = 0; node < problem->body.dead_force.size() / 3; ++node)
+    sum += problem->body.dead_force.segment<3>(3 * node);
+  EXPECT_LT((sum - Vec3(-0.5, 0.0, 0.0)).norm(), 1e-14);  // the traction alone
+}
+
+TEST(TearProblem, ABodyOfLargeStrainSaysWhatItDoesNotHave) {
+  const std::string corotated = replaced(kPlate, "\"linear\"", "\"corotated\"");
+  const std::vector<BadScene> table{
+      {"strength = 0.4e6", "toughness = 40.0",
+       "s.toml:20: a toughness is held against the energy release of small strains, not of model 'corotated' (a "
+       "strength)"},
+      {"[[crack]]", "[interaction]\ncontact = \"blend\"\n[[crack]]",
+       "s.toml:22: contact \"blend\" adds up reactions, which model 'corotated' does not allow (contact = "
+       "\"consistent\")"}};
+  for (const BadScene& bad : table) {
+    const Expected<Scene> scene = parse_scene(replaced(corotated, bad.from, bad.to), "s.toml");
+    ASSERT_TRUE(scene.has_value()) << scene.error().message();
+    for (const Puller puller : {Puller::script, Puller::hand}) {
+      const Expected<TearProblem> problem = build_tear_problem(*scene, puller);
+      ASSERT_FALSE(problem.has_value()) << bad.message;
+      EXPECT_EQ(problem.error().message(), bad.message);
+    }
+  }
+}
+
 TEST(TearProblem, AHandIsHeldToWhatIsWrongForAll) {
   const Expected<TearProblem> free =
       build_for_hand(replaced(kPlate, "[[support]]\nset = \"+x\"\nx = 0.0\ny = 0.0\nz = 0.0\n", ""));
@@ -135,7 +173,7 @@ TEST(TearProblem, AHandIsHeldToWhatIsWrongForAll) {
       build_for_hand(replaced(replaced(kPlate, "\"linear\"", "\"corotated\""), "[[crack]]", of_a_record + "[[crack]]"));
   ASSERT_FALSE(corotated.has_value());
   EXPECT_EQ(corotated.error().message(),
-            "s.toml:11: a body with model 'corotated' cannot be torn yet (kind = \"linear\")");
+            "s.toml:11: a record is of a body of small strains, not of model 'corotated' (kind = \"linear\")");
 }
 
 TEST(TearProblem, PushAndBlendAreRead) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/session/live_case.h"
+#include "tests/support/replaced.h"
 
 namespace rhexis::session {
 namespace {
@@ -83,9 +84,10 @@ TEST(Interaction, AScriptIsTheOneOfTheCommandTear) {
   }
 }
 
-TEST(Interaction, TheSameInputsGiveTheSameBits) {
-  Case one;
-  Case other;
+/// The script of the scene twice, each step of one like that of the other.
+void expect_same_bits(const std::string& text) {
+  Case one(text);
+  Case other(text);
   const std::vector<StepOutcome> a = one.run_script();
   const std::vector<StepOutcome> b = other.run_script();
   int tears = 0;
@@ -98,6 +100,26 @@ TEST(Interaction, TheSameInputsGiveTheSameBits) {
   EXPECT_GT(tears, 3);
   EXPECT_NE(a.front().fingerprint, a.back().fingerprint);
   EXPECT_NE(a[100].law, a[101].law);  // each is another publication
+}
+
+TEST(Interaction, TheSameInputsGiveTheSameBits) {
+  expect_same_bits(test::kLivePlate);
+  expect_same_bits(test::replaced(test::kLivePlate, "kind = \"linear\"", "kind = \"hyperelastic\""));
+}
+
+TEST(Interaction, EveryLiveModelIsTornAndSwitchedWhileItIsOpen) {
+  Case live;
+  for (const char* model : {"hyperelastic", "corotated", "geometrically-nonlinear", "linear"}) {
+    wire::SetValueT set;
+    set.key = "model.kind";
+    set.value = model;
+    live.interaction.carry_out(payload(set));
+    ASSERT_EQ(live.interaction.tear().model_name(), model);
+    live.heard.topologies.clear();
+    for (const StepOutcome& step : live.run_script()) ASSERT_TRUE(step.force.allFinite()) << model;
+    EXPECT_GT(live.heard.topologies.size(), 3U) << model;
+    EXPECT_FALSE(live.interaction.is_scripted()) << model;
+  }
 }
 
 TEST(Interaction, AnUndoneTearIsAnotherBodyThanTheOneBefore) {

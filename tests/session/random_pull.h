@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <bit>
 #include <functional>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -16,6 +15,7 @@
 #include "mesh/quality.h"
 #include "session/tear_session.h"
 #include "tests/support/hinges.h"
+#include "tests/support/random_draws.h"
 #include "tests/support/torn_body_oracle.h"
 
 namespace rhexis::test {
@@ -37,7 +37,7 @@ struct PullTally {
 
 class RandomPull {
  public:
-  explicit RandomPull(std::uint64_t seed) : seed_(seed), random_(seed) {}
+  explicit RandomPull(std::uint64_t seed) : seed_(seed), draws_(seed) {}
 
   /// What else watches the pull: called when the body is there, and after each edit that it takes or gives back.
   struct Watch {
@@ -68,21 +68,10 @@ class RandomPull {
   }
 
  private:
-  double uniform(double from, double to) {
-    return from + (to - from) * static_cast<double>(random_() >> 11) * 0x1.0p-53;  // the same on every machine
-  }
-  std::size_t choose(std::size_t count) { return static_cast<std::size_t>(random_() % count); }
-  /// One draw after the other: the order of arguments is the compiler's.
-  Vec3 vector(double from, double to) {
-    Vec3 v;
-    for (int c = 0; c < 3; ++c) v[c] = uniform(from, to);
-    return v;
-  }
-  Vec3 direction() {
-    Vec3 v = vector(-1, 1);
-    while (v.norm() > 1.0 || v.norm() < 0.1) v = vector(-1, 1);
-    return v.normalized();
-  }
+  double uniform(double from, double to) { return draws_.uniform(from, to); }
+  std::size_t choose(std::size_t count) { return draws_.choose(count); }
+  Vec3 vector(double from, double to) { return draws_.vector(from, to); }
+  Vec3 direction() { return draws_.direction(); }
 
   void make_body() {
     const std::array<int, 4> plate_nodes{506, 765, 1012, 1270};
@@ -245,7 +234,7 @@ class RandomPull {
 
   Watch watch_;
   std::uint64_t seed_;
-  std::mt19937_64 random_;
+  RandomDraws draws_;
   mesh::TetMesh mesh_;
   mesh::BoundingBox box_;
   bool plate_ = false;

@@ -14,6 +14,7 @@
 #include "session/replay_check.h"
 #include "session/replay_source.h"
 #include "tests/session/live_case.h"
+#include "tests/support/replaced.h"
 
 namespace rhexis::session {
 namespace {
@@ -22,10 +23,11 @@ using test::payload;
 using test::wait_until;
 
 /// Records the scripted plate into `folder`/recordings, again and again from the start, until `ends` says so.
-void record_plate(const std::filesystem::path& folder, test::KeptFrames& frames, const std::function<bool()>& ends) {
+void record_plate(const std::filesystem::path& folder, test::KeptFrames& frames, const std::function<bool()>& ends,
+                  const std::string& scene = test::kLivePlate) {
   LiveSettings settings;
   settings.scene = (folder / "plate.toml").string();
-  std::ofstream(settings.scene) << test::kLivePlate;
+  std::ofstream(settings.scene) << scene;
   settings.recordings = folder / "recordings";
   settings.records = true;
   settings.version = "test";
@@ -89,6 +91,19 @@ TEST_F(RecordedPlate, IsComputedAgainToTheSameBits) {
   EXPECT_EQ(report->steps, file->count().steps);
   EXPECT_EQ(report->ticks, file->count().ticks);
   EXPECT_GT(report->ticks, 300U);
+}
+
+/// Frames behind the hand, factors made beside it: all of that is counted, so that it comes out the same.
+TEST(Recording, ABodyOfLargeStrainIsComputedAgainToTheSameBits) {
+  test::TestFolder folder("recorded-psh");
+  test::KeptFrames frames;
+  record_plate(
+      folder.path(), frames, [&] { return frames.count(wire::Payload::Edit) >= 6; },
+      test::replaced(test::kLivePlate, "kind = \"linear\"", "kind = \"hyperelastic\""));
+  const Expected<CheckReport> report = check_recording(folder.only_file("recordings"));
+  ASSERT_TRUE(report.has_value()) << report.error().message();
+  EXPECT_EQ(report->difference, "");
+  EXPECT_GE(report->advances, 6U);
 }
 
 TEST_F(RecordedPlate, OneBitOfInputMakesTheCheckFailAndNameTheTick) {

@@ -12,6 +12,7 @@
 #include "model/stabilisation.h"
 #include "solver/equilibrium.h"
 #include "tests/support/bodies.h"
+#include "tests/support/model_names.h"
 
 namespace rhexis {
 namespace {
@@ -43,7 +44,7 @@ class LiveEquilibrium : public testing::TestWithParam<model::ModelKind> {
   }
   solver::HeldPoint at_node(std::int32_t node) const { return {{node, 0, 0}, Vec3::UnitX(), 1}; }
   solver::LiveEquilibrium live(solver::LiveOptions options = {.tolerance = kSettled}) const {
-    return {*model_, loading_, model_->initial_state(), options};
+    return {model_, loading_, model_->initial_state(), options};
   }
   /// Until it is at rest.
   static void rest(solver::LiveEquilibrium& body, const Vec3& hand) {
@@ -68,7 +69,7 @@ class LiveEquilibrium : public testing::TestWithParam<model::ModelKind> {
   }
 
   mesh::TetMesh mesh_;
-  std::unique_ptr<model::Model> model_;
+  std::shared_ptr<const model::Model> model_;
   model::Loading loading_;
 };
 
@@ -172,11 +173,7 @@ TEST_P(LiveEquilibrium, AHandThatTearsAwayIsFollowedLateAndNeverWrong) {
 INSTANTIATE_TEST_SUITE_P(Models, LiveEquilibrium,
                          testing::Values(model::ModelKind::corotated, model::ModelKind::geometrically_nonlinear,
                                          model::ModelKind::hyperelastic),
-                         [](const auto& tested) {
-                           std::string name(model::kModelNames[static_cast<std::size_t>(tested.param)]);
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+                         test::model_case_name);
 
 }  // namespace
 }  // namespace rhexis

@@ -1,0 +1,252 @@
+#include "response/live_response.h"
+
+#include <cmath>
+
+#include "base/parallel.h"
+#include "fracture/torn_body.h"
+#include "mesh/generate.h"
+#include "model/stabilisation.h"
+#include "response/exact_response.h"
+#include "tests/fracture/cut_support.h"
+#include "tests/support/full_solve.h"
+#include "tests/support/model_names.h"
+
+namespace rhexis::response {
+namespace {
+
+using rhexis::test::FullSolve;
+
+/// What moves at rest leave of the residual, relative; forces and places follow it.
+constexpr double kSettled = 1e-7;
+
+/// A soft bar of 100 x 40 x 40 mm, held at -x and cut from its upper side near the middle, step by step.
+struct TornBar {
+  explicit TornBar(model::ModelKind kind, fracture::IncisionMethod method = fracture::IncisionMethod::split,
+                   double poisson = 0.45, const Vec3& gravity = Vec3(0.0, 0.0, -9.81))
+      : cut(mesh::make_bar({{0.10, 0.04, 0.04}}, 260).value(), method) {
+    cut.hold([](const Vec3& x) { return x[0] < 1e-9; });
+    body.model.kind = kind;
+    body.model.elastic = body.body.elastic = {1e5, poisson};
+    body.model.law = material::to_mooney_rivlin(body.model.elastic);
+    body.model.beta = model::auto_beta(body.model.law);
+    body.body.density = 1000.0;
+    body.body.gravity = gravity;
+    for (std::size_t dof = 0; dof < cut.held.size(); ++dof) {
+      if (cut.held[dof] != 0) body.body.supports.push_back({static_cast<std::int32_t>(dof), 0.0});
+    }
+  }
+  std::unique_ptr<LiveResponse> response(int frames = 200, double tolerance = kSettled) const {
+    Expected<std::unique_ptr<LiveResponse>> made = LiveResponse::make(
+        cut.body,
+        {.body = body, .live = {.tolerance = tolerance}, .frames = frames, .solver = {.tolerance = 1e-9, .steps = 2}});
+    EXPECT_TRUE(made.has_value()) << made.error().message();
+    return std::move(*made);
+  }
+  /// The crack goes down by `depth` (m); the body takes it.
+  mesh::MeshEdit step(double depth) {
+    mesh::MeshEdit edit =
+        cut.incise(fracture::test::strip({{0.052, -0.001, 0.041 - at}, {0.052, 0.041, 0.041 - at}},
+                                         {{0.052, -0.001, 0.041 - at - depth}, {0.052, 0.041, 0.041 - at - depth}}))
+            .edit;
+    at += depth;
+    cut.apply(edit);
+    return cut.body.history().back();
+  }
+  SurfacePoint end() const {
+    const std::optional<SurfacePoint> point = nearest_surface_point(cut.body, Vec3(0.10, 0.02, 0.04), 0.02);
+    EXPECT_EQ(point->count, 1);
+    return *point;
+  }
+
+  fracture::test::CutBody cut;
+  LiveBody body;
+  double at = 0.0;
+};
+
+Vec3 force_of(const LiveResponse& response, const SurfacePoint& point, const Vec3& hand,
+              ContactMode mode = ContactMode::hold) {
+  return make_contact_law(point, ContactRule::consistent, mode, response.compliance(), response.rest()).force(hand);
+}
+
+/// Until it is at rest.
+void rest(LiveResponse& response, const Vec3& hand) {
+  for (int k = 0; k < 40; ++k) {
+    const MoveReport report = response.move(hand);
+    if (report.at_rest) return;
+  }
+  FAIL() << "not at rest, residual " << response.residual();
+}
+
+class LiveResponseOf : public testing::TestWithParam<model::ModelKind> {};
+
+TEST_P(LiveResponseOf, TheTornBodyFeelsAsTheFullSolveOfWhatIsLeft) {
+  for (const auto method : {fracture::IncisionMethod::split, fracture::IncisionMethod::keep_nodes}) {
+    TornBar bar(GetParam(), method);
+    const auto response = bar.response();
+    const SurfacePoint point = bar.end();
+    response->hold(point, ContactMode::hold);
+    const Vec3 start = response->rest().head<3>();
+    const Vec3 by(0.004, 0.006, 0.010);
+    for (int k = 1; k <= 10; ++k) response->move(start + k / 10.0 * by);
+    for (int tears = 0; tears < 3; ++tears) {
+      const mesh::MeshEdit edit = bar.step(0.008);
+      ASSERT_FALSE(edit.empty());
+      const FollowReport followed = response->follow(edit, {});
+      ASSERT_TRUE(followed.ok) << followed.why;
+      ASSERT_NO_FATAL_FAILURE(rest(*response, start + by));
+      const FullSolve full(bar.cut.body, bar.body, response->state().u);
+      const FullSolve::Held exact = full.held(point.node[0], start + by, full.state_of(response->state()));
+      ASSERT_TRUE(exact.converged);
+      const Vec3 force = force_of(*response, point, start + by);
+      EXPECT_LE((force - exact.force).norm(), 1e-5 * exact.force.norm()) << tears;
+      // The condition number stands between residual and place.
+      EXPECT_LE((response->state().u - exact.state.u).norm(), 1e-4 * exact.state.u.norm()) << tears;
+    }
+    response->grasp({});
+    ASSERT_NO_FATAL_FAILURE(rest(*response, Vec3::Zero()));
+    const FullSolve full(bar.cut.body, bar.body, response->state().u);
+    const FullSolve::Held exact = full.released(full.at_rest(), 4);
+    ASSERT_TRUE(exact.converged);
+    EXPECT_GT(exact.state.u.norm(), 0.0);
+    EXPECT_LE((response->state().u - exact.state.u).norm(), 1e-4 * exact.state.u.norm());
+  }
+}
+
+TEST_P(LiveResponseOf, TheLawIsTheDerivativeOfTheForceOfTheTornBody) {
+  TornBar bar(GetParam());
+  const auto response = bar.response();
+  const SurfacePoint point = bar.end();
+  response->hold(point, ContactMode::hold);
+  const Vec3 hand = response->rest().head<3>() + Vec3(0.0, 0.004, 0.008);
+  for (int k = 1; k <= 10; ++k) response->move(k / 10.0 * hand);
+  ASSERT_TRUE(response->follow(bar.step(0.015), {}).ok);
+  // One column of the compliance is brought up to date by each correction.
+  for (int k = 0; k < 12; ++k) response->move(hand + Vec3(0.0, 0.0, k % 2 == 0 ? 1e-5 : 0.0));
+  ASSERT_NO_FATAL_FAILURE(rest(*response, hand));
+  const FullSolve full(bar.cut.body, bar.body, response->state().u);
+  const model::State near = full.state_of(response->state());
+  Mat3 derivative;
+  constexpr double kMove = 1e-5;
+  for (int c = 0; c < 3; ++c)
+    derivative.col(c) = (full.held(point.node[0], hand + kMove * Vec3::Unit(c), near).force -
+                         full.held(point.node[0], hand - kMove * Vec3::Unit(c), near).force) /
+                        (2.0 * kMove);
+  const ContactLaw law =
+      make_contact_law(point, ContactRule::consistent, ContactMode::hold, response->compliance(), response->rest());
+  EXPECT_GT(derivative.norm(), 0.0);
+  EXPECT_LE((law.stiffness - derivative).norm(), 0.05 * derivative.norm());  // as far as a worn column goes
+}
+
+TEST_P(LiveResponseOf, UndoReturnsToTheBit) {
+  TornBar bar(GetParam());
+  const auto response = bar.response(1);
+  const SurfacePoint point = bar.end();
+  response->hold(point, ContactMode::hold);
+  for (int k = 1; k <= 10; ++k) response->move(Vec3(0.0, 0.0, 0.001 * k));
+  const model::State before = response->state();
+  const mesh::MeshEdit edit = bar.step(0.01);
+  ASSERT_TRUE(response->follow(edit, {}).ok);
+  for (int k = 0; k < 5; ++k) response->move(Vec3(0.0, 0.0, 0.01));
+  EXPECT_NE(response->state().u.head(before.u.size()), before.u);
+  bar.cut.undo();
+  response->go_back(edit, {});
+  EXPECT_EQ(response->state().u, before.u);
+  EXPECT_EQ(response->state().lambda, before.lambda);
+  EXPECT_GT(response->compliance().norm(), 0.0);  // what was held is held
+}
+
+TEST_P(LiveResponseOf, TheSameMovesGiveTheSameBitsWhateverTheThreads) {
+  std::vector<VectorX> state;
+  for (const int threads : {1, 2}) {
+    set_thread_count(threads);
+    TornBar bar(GetParam());
+    const auto response = bar.response(1, 1e-4);
+    response->hold(bar.end(), ContactMode::hold);
+    for (int k = 1; k <= 60; ++k) {
+      response->move(Vec3(0.0002 * k, 0.0, 0.0003 * k));
+      if (k % 15 == 0) {
+        ASSERT_TRUE(response->follow(bar.step(0.005), {}).ok);
+      }
+    }
+    state.push_back(response->state().u);
+  }
+  set_thread_count(0);
+  EXPECT_EQ(state[0], state[1]);
+}
+
+TEST_P(LiveResponseOf, WhatIsPushedSlidesAsideUntilItFeelsTheNormalAlone) {
+  TornBar bar(GetParam());
+  const auto response = bar.response();
+  SurfacePoint point = bar.end();
+  point.normal = Vec3(0.0, 0.6, 0.8);
+  response->hold(point, ContactMode::push);
+  const Vec3 start = response->rest().head<3>();
+  const Vec3 pressed = start - 0.006 * point.normal;
+  for (int k = 1; k <= 10; ++k) response->move(start - 0.0006 * k * point.normal);
+  for (int k = 0; k < 10; ++k) response->move(pressed);
+  const Vec3 force = force_of(*response, point, pressed, ContactMode::push);
+  EXPECT_LT(force.dot(point.normal), 0.0);
+  EXPECT_LT((force - force.dot(point.normal) * point.normal).norm(), 1e-12 * force.norm());
+  // The law starts from where the loads alone have the point; it is the point's own force that has to be normal too.
+  EXPECT_LT((response->state().u.segment<3>(3 * point.node[0].value()) - pressed).dot(point.normal), 1e-7);
+  // Taken away, it lies at rest again.
+  for (int k = 0; k < 40; ++k) response->move(start + 0.01 * point.normal);
+  EXPECT_EQ(force_of(*response, point, start + 0.01 * point.normal, ContactMode::push), Vec3::Zero());
+  EXPECT_LT((response->state().u.segment<3>(3 * point.node[0].value()) - start).norm(), 1e-6);
+}
+
+TEST_P(LiveResponseOf, PulledAtForLongItComesBackToRest) {
+  TornBar bar(GetParam());
+  const auto response = bar.response(1, 1e-4);
+  for (int k = 0; k < 20; ++k) response->move(Vec3::Zero());
+  const VectorX before = response->state().u;
+  const SurfacePoint point = bar.end();
+  for (int pull = 0; pull < 30; ++pull) {
+    response->hold(point, ContactMode::hold);
+    const Vec3 start = response->rest().head<3>();
+    const Vec3 by = 0.01 * Vec3(std::sin(1.0 * pull), std::cos(2.0 * pull), std::cos(1.0 * pull));
+    for (int k = 1; k <= 12; ++k) response->move(start + k / 12.0 * by);
+    response->grasp({});
+    for (int k = 0; k < 12; ++k) response->move(Vec3::Zero());
+  }
+  for (int k = 0; k < 30; ++k) response->move(Vec3::Zero());
+  // One frame a move, to the tolerance of a frame.
+  EXPECT_LE((response->state().u - before).lpNorm<Eigen::Infinity>(), 1e-6 * 0.10);
+}
+
+TEST_P(LiveResponseOf, SmallPullsFeelAsSmallStrains) {
+  TornBar bar(GetParam(), fracture::IncisionMethod::split, 0.3, Vec3::Zero());
+  bar.step(0.02);
+  const auto response = bar.response();
+  const SurfacePoint point = bar.end();
+  response->hold(point, ContactMode::hold);
+  const Vec3 hand(1e-6, 2e-6, 3e-6);
+  ASSERT_NO_FATAL_FAILURE(rest(*response, hand));
+  const Vec3 force = force_of(*response, point, hand);
+  const auto linear = ExactResponse::make(bar.cut.body, {.body = bar.body.body}, {});
+  linear->grasp({point.node.data(), 1});
+  const Vec3 small =
+      make_contact_law(point, ContactRule::consistent, ContactMode::hold, linear->compliance(), linear->rest())
+          .force(hand);
+  EXPECT_GT(small.norm(), 0.0);
+  // The mixed element is another discretisation of the same small strains, a softer one.
+  const double tolerance = GetParam() == model::ModelKind::hyperelastic ? 0.15 : 1e-3;
+  EXPECT_LT((force - small).norm(), tolerance * small.norm());
+}
+
+TEST_P(LiveResponseOf, APointOnASupportIsNotHeld) {
+  TornBar bar(GetParam());
+  const auto response = bar.response();
+  const std::optional<SurfacePoint> point = nearest_surface_point(bar.cut.body, Vec3(0.0, 0.02, 0.02));
+  response->hold(*point, ContactMode::hold);
+  EXPECT_EQ(response->compliance().norm(), 0.0);
+  EXPECT_TRUE(response->move(Vec3::Zero()).near);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, LiveResponseOf,
+                         testing::Values(model::ModelKind::corotated, model::ModelKind::geometrically_nonlinear,
+                                         model::ModelKind::hyperelastic),
+                         rhexis::test::model_case_name);
+
+}  // namespace
+}  // namespace rhexis::response

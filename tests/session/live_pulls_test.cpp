@@ -1,0 +1,240 @@
+// Bodies of large strain torn by a hand that does not wait: one frame a tick, one advance a tick.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "fracture/incision.h"
+#include "mesh/generate.h"
+#include "mesh/quality.h"
+#include "model/stabilisation.h"
+#include "response/live_response.h"
+#include "session/tear_session.h"
+#include "tests/support/full_solve.h"
+#include "tests/support/measured.h"
+#include "tests/support/random_draws.h"
+
+namespace rhexis::session {
+namespace {
+
+using test::FullSolve;
+
+/// RHEXIS_LIVE_PULLS asks for more; the first of them are run always.
+int pull_count() {
+  const char* asked = std::getenv("RHEXIS_LIVE_PULLS");
+  return asked != nullptr ? std::atoi(asked) : 24;
+}
+
+struct LiveTally {
+  int pulls = 0;
+  int advances = 0;
+  int late = 0;  ///< ticks in which the body was not judged
+  int ticks = 0;
+  int refused = 0;           ///< cuts that would have turned a tet inside out
+  int held = 0;              ///< topologies at which the held body was held against the full solve
+  int released = 0;          ///< the same, let go
+  int no_oracle = 0;         ///< of those, full solves that did not converge
+  double worst_force = 0.0;  ///< relative to the full solve
+  double worst_place = 0.0;  ///< of a node, part of the body's size
+  double least_J = 1.0;
+};
+
+/// Every so many topologies the held body is held against the full solve.
+constexpr std::size_t kEvery = 3;
+
+class LivePull {
+ public:
+  explicit LivePull(std::uint64_t seed) : seed_(seed), draws_(seed) {}
+
+  void run(LiveTally& tally) {
+    make_body();
+    Expected<std::unique_ptr<TearSession>> made = TearSession::make(mesh_, settings_, choose_cracks());
+    if (!made) return;  // the crack misses the body, or it finds no equilibrium under its loads: said in words
+    tear_ = std::move(*made);
+    ++tally.pulls;
+    const std::size_t start = tear_->body().topology();
+    pull(tally);
+    if (testing::Test::HasFatalFailure()) return;
+    tear_->let_go();
+    settle(tally);
+    for (int undone = 0; tear_->body().topology() > start && undone < 3; ++undone) ASSERT_TRUE(tear_->undo()) << seed_;
+    check_state(tally);
+  }
+
+ private:
+  void make_body() {
+    std::string side = "bottom";
+    if (draws_.uniform(0, 1) < 0.5) {
+      mesh_ = *mesh::make_tube({.radius = 0.005, .length = 0.03, .wall = 0.0015, .bend = draws_.uniform(0.0, 40.0)},
+                               500 + static_cast<int>(draws_.choose(500)));
+    } else {
+      mesh_ = *mesh::make_bar({Vec3(0.04, 0.01, 0.01)}, 200 + static_cast<int>(draws_.choose(300)));
+      side = "-x";
+    }
+    box_ = mesh::bounding_box(mesh_);
+    std::vector<std::uint8_t> held(mesh_.node_count(), 0);
+    for (const NodeId node : mesh_.find_node_set(side)->nodes) held[node.index()] = 1;
+    for (std::size_t node = 0; node < held.size(); ++node) {
+      for (int c = 0; c < 3 && held[node] != 0; ++c)
+        settings_.body.supports.push_back({static_cast<std::int32_t>(3 * node) + c, 0.0});
+    }
+    model::ModelSettings model;
+    settings_.body.elastic = model.elastic = {1.0e5, draws_.uniform(0.4, 0.49)};
+    model.kind = model::ModelKind::hyperelastic;
+    model.law = material::to_mooney_rivlin(model.elastic);
+    model.beta = model::auto_beta(model.law);
+    settings_.large_strain = model;
+    settings_.body.density = 1000.0;
+    settings_.body.gravity = 9.81 * draws_.direction();
+    settings_.criterion = std::string(fracture::kCriterionNames[draws_.choose(fracture::kCriterionNames.size())]);
+    settings_.strength = draws_.uniform(0.002e6, 0.02e6);
+    settings_.advance_threshold = draws_.uniform(0.3, 1.0) * *settings_.strength;
+    settings_.incision =
+        draws_.uniform(0, 1) < 0.5 ? fracture::IncisionMethod::split : fracture::IncisionMethod::keep_nodes;
+  }
+
+  std::vector<scene::CrackSettings> choose_cracks() {
+    if (draws_.uniform(0, 1) < 0.3) return {};  // starts where it yields
+    const Vec3 size = box_.size();
+    const Vec3 inside = box_.from + draws_.vector(0.3, 0.7).cwiseProduct(size);
+    Vec3 way = draws_.direction();
+    Vec3 through = draws_.direction();
+    through = (through - through.dot(way) * way).normalized();
+    return {{{inside - size.norm() * way, inside, through}}};
+  }
+
+  void pull(LiveTally& tally) {
+    // A node of the surface, so that the full solve can hold it too.
+    const std::vector<mesh::TetFace> surface = mesh::solved_surface(tear_->body());
+    Vec3 at;
+    do {
+      at = mesh_.node(mesh::face_nodes(mesh_, surface[draws_.choose(surface.size())])[0]);
+    } while (held_near(at));
+    const auto mode = draws_.uniform(0, 1) < 0.85 ? response::ContactMode::hold : response::ContactMode::push;
+    if (!tear_->grasp(at, mode)) return;  // a support holds that point
+    const Vec3 by = draws_.uniform(0.4, 1.2) * box_.size().maxCoeff() * draws_.direction();
+    constexpr int kTicks = 150;
+    Vec3 hand = Vec3::Zero();
+    int moved = 0;
+    for (int k = 1; moved < kTicks && k <= 4 * kTicks; ++k) {
+      if (!tore_) hand = by * (static_cast<double>(++moved) / kTicks);  // it stands still while the body tears
+      const TickReport report = tear_->tick(
+          hand, [](const AdvanceRecord&) {}, 1);
+      tore_ = report.advances > 0;
+      ++tally.ticks;
+      tally.advances += report.advances;
+      if (!report.trouble.empty()) ++tally.refused;
+      if (!report.late.empty()) ++tally.late;
+      ASSERT_TRUE(report.force.allFinite()) << seed_;
+      if (tore_) check_state(tally);
+      if (testing::Test::HasFatalFailure()) return;
+      if (report.let_go || tear_->pieces() > 1) break;
+      if (tore_ && tear_->hand().point().count == 1 && mode == response::ContactMode::hold &&
+          tear_->body().topology() % kEvery == 0)
+        check_held(hand, tally);
+    }
+  }
+
+  /// Nothing is NaN, and no tet in the solve inside out, in the reference or deformed.
+  void check_state(LiveTally& tally) {
+    VectorX u;
+    tear_->displacement(u);
+    ASSERT_TRUE(u.allFinite()) << seed_;
+    mesh::TetMesh moved = tear_->body().mesh();
+    for (std::size_t i = 0; i < moved.nodes.size(); ++i)
+      moved.nodes[i] += u.segment<3>(3 * static_cast<Eigen::Index>(i));
+    for (std::size_t t = 0; t < moved.tets.size(); ++t) {
+      if (!tear_->body().is_solved(TetId(t))) continue;
+      const double J = mesh::signed_volume(moved, TetId(t)) / mesh::signed_volume(tear_->body().mesh(), TetId(t));
+      ASSERT_GT(J, 0.0) << seed_ << " tet " << t;
+      tally.least_J = std::min(tally.least_J, J);
+    }
+  }
+
+  /// Near what is held, as the body is long.
+  bool held_near(const Vec3& at) const {
+    const Vec3 support = mesh_.nodes[static_cast<std::size_t>(settings_.body.supports.front().dof / 3)];
+    return (at - support).norm() < 0.4 * box_.size().maxCoeff();
+  }
+  response::LiveBody body() const { return {settings_.body, *settings_.large_strain, {}}; }
+
+  /// The hand waits until the body is at rest, without a tear: what it feels is the force of the full solve.
+  void check_held(const Vec3& hand, LiveTally& tally) {
+    TickReport report;
+    for (int k = 0; k < 300; ++k) {
+      report = tear_->tick(hand, {}, 1);
+      ++tally.ticks;
+      tally.advances += report.advances;
+      if (report.let_go || tear_->pieces() > 1) return;
+      if (report.at_rest) break;
+    }
+    if (!report.at_rest) return;
+    VectorX u;
+    tear_->displacement(u);
+    const FullSolve full(tear_->body(), body(), u);
+    const Vec3 at = u.segment<3>(3 * Eigen::Index{tear_->hand().point().node[0].value()});
+    model::State near = full.at_rest();
+    near.u = u;
+    const FullSolve::Held exact = full.held(tear_->hand().point().node[0], at, near);
+    ++tally.held;
+    if (!exact.converged) {
+      ++tally.no_oracle;
+      return;
+    }
+    const double error = (tear_->hand().force() + exact.force).norm() / exact.force.norm();
+    EXPECT_LT(error, 1e-2) << seed_ << " topology " << tear_->body().topology();
+    tally.worst_force = std::max(tally.worst_force, error);
+  }
+
+  /// Let go, it comes to the equilibrium of what is left, as the full solve finds it from rest.
+  void settle(LiveTally& tally) {
+    TickReport report;
+    for (int k = 0; k < 600; ++k) {
+      report = tear_->tick(Vec3::Zero(), {}, 1);
+      if (report.at_rest) break;
+    }
+    ASSERT_TRUE(report.at_rest) << seed_ << ' ' << report.late;
+    check_state(tally);
+    VectorX u;
+    tear_->displacement(u);
+    const FullSolve full(tear_->body(), body(), u);
+    const FullSolve::Held exact = full.released(full.at_rest(), 4);
+    ++tally.released;
+    if (!exact.converged) {
+      ++tally.no_oracle;
+      return;
+    }
+    const double error = (u - exact.state.u).lpNorm<Eigen::Infinity>() / box_.size().norm();
+    EXPECT_LT(error, 1e-3) << seed_ << " topology " << tear_->body().topology();
+    tally.worst_place = std::max(tally.worst_place, error);
+  }
+
+  std::uint64_t seed_;
+  test::RandomDraws draws_;
+  mesh::TetMesh mesh_;
+  mesh::BoundingBox box_;
+  TearSettings settings_;
+  bool tore_ = false;
+  std::unique_ptr<TearSession> tear_;
+};
+
+TEST(LivePulls, TearWithoutHarmAndComeToTheEquilibriumOfTheTornBody) {
+  LiveTally tally;
+  const char* first = std::getenv("RHEXIS_FIRST_PULL");
+  const int from = first != nullptr ? std::atoi(first) : 0;
+  const int count = pull_count();
+  for (int seed = from; seed < from + count; ++seed) {
+    LivePull(static_cast<std::uint64_t>(seed)).run(tally);
+    if (testing::Test::HasFatalFailure()) FAIL() << "seed " << seed;
+  }
+  test::measured("{} live pulls, {} advances in {} ticks, {} late, {} cuts refused, least J {:.3f}", tally.pulls,
+                 tally.advances, tally.ticks, tally.late, tally.refused, tally.least_J);
+  test::measured(
+      "{} held and {} released against the full solve ({} of them not converged): force {:.1e}, place {:.1e}",
+      tally.held, tally.released, tally.no_oracle, tally.worst_force, tally.worst_place);
+  EXPECT_GT(tally.advances, count);  // the sweep tears, it does not only pull
+  EXPECT_GT(tally.released, count / 2);
+}
+
+}  // namespace
+}  // namespace rhexis::session
