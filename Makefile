@@ -65,7 +65,7 @@ format: ## lay out the sources with clang-format
 	@$(sources) | xargs clang-format-16 -i
 
 fuzz: ## every reader of foreign files for FUZZ_SECONDS under libFuzzer and sanitizers
-	@$(call build_preset,fuzz,all)
+	@$(call build_preset,fuzz,fuzz_programs)
 	@tools/run_fuzz.sh $(FUZZ_SECONDS)
 
 asan: ## the tests under AddressSanitizer and UndefinedBehaviorSanitizer

@@ -3,7 +3,7 @@
 #
 #     tools/run_fuzz.sh SECONDS [TARGET...]       for example: tools/run_fuzz.sh 60 msh vtu
 #
-# Targets are built by: cmake --preset fuzz && cmake --build --preset fuzz
+# Targets are built by: cmake --preset fuzz && cmake --build --preset fuzz --target fuzz_programs
 # What is found, and the grown corpus, goes to build/fuzz/found/TARGET; the seeds in fuzz/corpus stay as they are.
 set -u
 cd "$(dirname "$0")/.." || exit 2
@@ -21,7 +21,7 @@ if [ ${#targets[@]} -eq 0 ]; then
     [ -x "$program" ] && targets+=("${program##*/fuzz_}")
   done
 fi
-[ ${#targets[@]} -gt 0 ] || { echo "run_fuzz: no targets in build/fuzz/bin (cmake --preset fuzz && cmake --build --preset fuzz)" >&2; exit 2; }
+[ ${#targets[@]} -gt 0 ] || { echo "run_fuzz: no targets in build/fuzz/bin (cmake --preset fuzz && cmake --build --preset fuzz --target fuzz_programs)" >&2; exit 2; }
 
 run_one() {
   local target=$1 seconds=$2 folder=build/fuzz/found/$1

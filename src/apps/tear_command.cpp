@@ -77,9 +77,7 @@ class Script {
     if (!use) return;
     for (const std::string& remark : session::remarks_on(*use, said_))
       spdlog::warn("{:.3f} s: {}", 1e-3 * tick_, remark);
-    said_.outside = said_.outside || use->outside;
-    said_.past_last = said_.past_last || use->past_last;
-    said_.torn_off = said_.torn_off || use->torn_off;
+    said_.add(*use);
   }
 
   const scene::TearProblem& problem_;

@@ -19,7 +19,8 @@ ordered_json record_json(const std::optional<response::RecordUse>& use) {
   return {{"topology", use->topology},
           {"outside", use->outside},
           {"past_last", use->past_last},
-          {"torn_off", use->torn_off}};
+          {"torn_off", use->torn_off},
+          {"not_made", use->not_made}};
 }
 
 ordered_json advance_json(const session::AdvanceRecord& advance) {

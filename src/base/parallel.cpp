@@ -37,6 +37,8 @@ struct Pool {
   std::optional<tbb::global_control> limit;
 };
 
+thread_local int one_thread_here = 0;
+
 Pool& pool() {
   static Pool instance;
   return instance;
@@ -52,11 +54,14 @@ void set_thread_count(int threads) {
   p.arena.initialize(p.threads);
 }
 
+OneThreadHere::OneThreadHere() { ++one_thread_here; }
+OneThreadHere::~OneThreadHere() { --one_thread_here; }
+
 int thread_count() { return pool().threads; }
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
   Pool& p = pool();
-  if (p.threads == 1 || count < 2) {
+  if (p.threads == 1 || count < 2 || one_thread_here > 0) {
     for (std::size_t i = 0; i < count; ++i) body(i);
     return;
   }

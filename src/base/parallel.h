@@ -13,6 +13,16 @@ namespace rhexis {
 void set_thread_count(int threads);
 [[nodiscard]] int thread_count();
 
+/// While it lives, what its thread calls in parallel runs on that thread alone. For work beside other work, each on a
+/// core of its own, where a fork would wait for a thread that is busy.
+class OneThreadHere {
+ public:
+  OneThreadHere();
+  ~OneThreadHere();
+  OneThreadHere(const OneThreadHere&) = delete;
+  OneThreadHere& operator=(const OneThreadHere&) = delete;
+};
+
 /// Calls body(i) for i in [0, count), in any order, on thread_count() threads; runs inline when that is one.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
@@ -15,40 +16,80 @@ namespace rhexis::linalg {
 namespace {
 
 /// Rows that one thread takes at a time.
-constexpr std::size_t kGrain = 8192;
-constexpr std::int32_t kPatchSize = 150;
-constexpr std::int32_t kMostPatches = 128;
+constexpr std::size_t kGrain = 16384;
+constexpr std::int32_t kPatchSize = 60;
+constexpr std::int32_t kMostPatches = 256;
 constexpr int kLanczosSteps = 120;
 constexpr int kLanczosCheck = 20;  ///< steps after which the estimate is looked at again
 constexpr double kLanczosChange = 0.01;
+constexpr double kExhausted = 1e-8;
 /// Of Lanczos' estimate, which is from above.
 constexpr double kSafety = 0.7;
+
+std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 double smallest_of_tridiagonal(const std::vector<double>& diagonal, const std::vector<double>& below) {
   const auto count = static_cast<Eigen::Index>(diagonal.size());
   Eigen::MatrixXd T = Eigen::MatrixXd::Zero(count, count);
   for (Eigen::Index k = 0; k < count; ++k) {
-    T(k, k) = diagonal[static_cast<std::size_t>(k)];
-    if (k > 0) T(k, k - 1) = T(k - 1, k) = below[static_cast<std::size_t>(k)];
+    T(k, k) = diagonal[at(k)];
+    if (k > 0) T(k, k - 1) = T(k - 1, k) = below[at(k)];
   }
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(T, Eigen::EigenvaluesOnly).eigenvalues()[0];
 }
 
 }  // namespace
 
-ChebyshevInverse::ChebyshevInverse(const SymmetricCsr& C, double reduction) : rows_(C.rows()), root_(C.rows()) {
-  const CsrPattern& pattern = *C.pattern;
-  const auto at = [](Eigen::Index i) { return static_cast<std::size_t>(i); };
+ChebyshevInverse::ChebyshevInverse(const SymmetricCsr& C, double reduction) : rows_(C.rows()) {
+  Scaled exact = take_matrix(C);
+  if (col_.empty()) return;
+  take_patches(exact);
+  // Gershgorin's circles of D^-1 C, which has the same eigenvalues.
+  double radius = 0.0;
   for (Eigen::Index i = 0; i < rows_; ++i) {
-    const double diagonal = C.values[at(pattern.row_start[at(i) + 1]) - 1];
-    RHEXIS_CHECK(diagonal > 0.0, "diagonal {} in row {}", diagonal, i);
-    root_[i] = 1.0 / std::sqrt(diagonal);
+    double off = 0.0;
+    for (std::int32_t p = start_[at(i)]; p < start_[at(i) + 1]; ++p)
+      off += std::abs(exact.value[at(p)]) * exact.root[i] / exact.root[col_[at(p)]];
+    radius = std::max(radius, off);
   }
+  RHEXIS_CHECK(radius < 1.0, "not diagonally dominant: {}", radius);
+  const double high = 1.0 + radius;
+  const double low = std::max(1.0 - radius, kSafety * smallest_eigenvalue(exact));
+  centre_ = static_cast<float>(0.5 * (high + low));
+  half_width_ = static_cast<float>(0.5 * (high - low));
+  // Error after k steps: at most 1 / T_k(centre / half width).
+  steps_ =
+      std::max(1, static_cast<int>(std::ceil(std::acosh(1.0 / reduction) / std::acosh((high + low) / (high - low)))));
+}
+
+ChebyshevInverse::Scaled ChebyshevInverse::take_matrix(const SymmetricCsr& C) {
+  const CsrPattern& pattern = *C.pattern;
+  const bool diagonal = static_cast<Eigen::Index>(pattern.column.size()) == rows_;
+  std::vector<std::int32_t> patch(at(rows_), 0);
+  if (!diagonal)
+    patch = cut_into_patches(pattern, std::max(kPatchSize, static_cast<std::int32_t>((rows_ - 1) / kMostPatches + 1)));
+  row_of_.resize(at(rows_));
+  std::iota(row_of_.begin(), row_of_.end(), 0);
+  std::stable_sort(row_of_.begin(), row_of_.end(),
+                   [&](std::int32_t a, std::int32_t b) { return patch[at(a)] < patch[at(b)]; });
+  std::vector<std::int32_t> place(at(rows_));
+  Scaled exact;
+  exact.root.resize(rows_);
+  for (Eigen::Index i = 0; i < rows_; ++i) {
+    const std::int32_t row = row_of_[at(i)];
+    place[at(row)] = static_cast<std::int32_t>(i);
+    const double d = C.values[at(pattern.row_start[at(row) + 1]) - 1];
+    RHEXIS_CHECK(d > 0.0, "diagonal {} in row {}", d, row);
+    exact.root[i] = 1.0 / std::sqrt(d);
+    if (i > 0 && patch[at(row)] != patch[at(row_of_[at(i) - 1])]) patch_start_.push_back(static_cast<std::int32_t>(i));
+  }
+  patch_start_.push_back(static_cast<std::int32_t>(rows_));
   start_.assign(at(rows_) + 1, 0);
   const auto for_each_entry = [&](const auto& use) {
-    for (Eigen::Index i = 0; i < rows_; ++i) {
-      for (std::int32_t k = pattern.row_start[at(i)]; k + 1 < pattern.row_start[at(i) + 1]; ++k)
-        use(static_cast<std::int32_t>(i), pattern.column[at(k)], C.values[at(k)]);
+    for (Eigen::Index row = 0; row < rows_; ++row) {
+      for (std::int32_t k = pattern.row_start[at(row)]; k + 1 < pattern.row_start[at(row) + 1]; ++k) {
+        if (C.values[at(k)] != 0.0) use(place[at(row)], place[at(pattern.column[at(k)])], C.values[at(k)]);
+      }
     }
   };
   for_each_entry([&](std::int32_t i, std::int32_t j, double) {
@@ -57,94 +98,90 @@ ChebyshevInverse::ChebyshevInverse(const SymmetricCsr& C, double reduction) : ro
   });
   for (std::size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
   col_.resize(at(start_.back()));
-  value_.resize(col_.size());
+  exact.value.resize(col_.size());
   std::vector<std::int32_t> next(start_.begin(), start_.end() - 1);
-  VectorX off = VectorX::Zero(rows_);
   for_each_entry([&](std::int32_t i, std::int32_t j, double value) {
-    const double scaled = value * root_[i] * root_[j];
+    const double scaled = value * exact.root[i] * exact.root[j];
     for (const auto& [row, column] : {std::pair(i, j), std::pair(j, i)}) {
-      const auto place = at(next[at(row)]++);
-      col_[place] = column;
-      value_[place] = scaled;
+      const auto to = at(next[at(row)]++);
+      col_[to] = column;
+      exact.value[to] = scaled;
     }
-    // Gershgorin's circles of D^-1 C, which has the same eigenvalues.
-    off[i] += std::abs(value) * root_[i] * root_[i];
-    off[j] += std::abs(value) * root_[j] * root_[j];
   });
-  const double radius = rows_ == 0 ? 0.0 : off.maxCoeff();
-  RHEXIS_CHECK(radius < 1.0, "not diagonally dominant: {}", radius);
-  if (radius == 0.0) return;
+  root_ = exact.root.cast<float>();
+  value_.assign(exact.value.begin(), exact.value.end());
+  return exact;
+}
 
-  patch_ = cut_into_patches(pattern, std::max(kPatchSize, static_cast<std::int32_t>((rows_ - 1) / kMostPatches + 1)));
-  const std::int32_t count = *std::max_element(patch_.begin(), patch_.end()) + 1;
-  weight_ = root_.cwiseInverse();
+/// M W is what is left of sums that cancel, and its inverse is as large as C is ill-conditioned: not in single
+/// precision.
+void ChebyshevInverse::take_patches(Scaled& exact) {
+  const auto count = static_cast<Eigen::Index>(patches());
+  const VectorX weight = exact.root.cwiseInverse();
+  std::vector<std::int32_t> patch(at(rows_));
+  for (Eigen::Index k = 0; k < count; ++k)
+    std::fill(patch.begin() + patch_start_[at(k)], patch.begin() + patch_start_[at(k) + 1],
+              static_cast<std::int32_t>(k));
   std::vector<Eigen::Triplet<double>> entries;
   for (Eigen::Index i = 0; i < rows_; ++i) {
-    entries.emplace_back(i, patch_[at(i)], weight_[i]);
+    entries.emplace_back(i, patch[at(i)], weight[i]);
     for (std::int32_t p = start_[at(i)]; p < start_[at(i) + 1]; ++p)
-      entries.emplace_back(i, patch_[at(col_[at(p)])], value_[at(p)] * weight_[col_[at(p)]]);
+      entries.emplace_back(i, patch[at(col_[at(p)])], exact.value[at(p)] * weight[col_[at(p)]]);
   }
-  product_.resize(rows_, count);
-  product_.setFromTriplets(entries.begin(), entries.end());
+  exact.product.resize(rows_, count);
+  exact.product.setFromTriplets(entries.begin(), entries.end());
   Eigen::MatrixXd coarse = Eigen::MatrixXd::Zero(count, count);
+  near_.resize(rows_);
   for (Eigen::Index i = 0; i < rows_; ++i) {
-    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(product_, i); it; ++it)
-      coarse(patch_[at(i)], it.col()) += weight_[i] * it.value();
-  }
-  coarse_.compute(coarse);
-
-  const double high = 1.0 + radius;
-  const double low = std::max(1.0 - radius, kSafety * smallest_eigenvalue());
-  centre_ = 0.5 * (high + low);
-  half_width_ = 0.5 * (high - low);
-  // Error after k steps: at most 1 / T_k(centre / half width).
-  steps_ = std::max(1, static_cast<int>(std::ceil(std::acosh(1.0 / reduction) / std::acosh(centre_ / half_width_))));
-}
-
-void ChebyshevInverse::multiply(const VectorX& x, VectorX& y) const {
-  y.resize(rows_);
-  parallel_ranges(static_cast<std::size_t>(rows_), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      double sum = x[static_cast<Eigen::Index>(i)];
-      for (std::int32_t p = start_[i]; p < start_[i + 1]; ++p)
-        sum += value_[static_cast<std::size_t>(p)] * x[col_[static_cast<std::size_t>(p)]];
-      y[static_cast<Eigen::Index>(i)] = sum;
+    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(exact.product, i); it; ++it) {
+      const std::int32_t own = patch[at(i)];
+      coarse(own, it.col()) += weight[i] * it.value();
+      if (it.col() == own) {
+        near_[i] = static_cast<float>(it.value());
+      } else {
+        far_.push_back(
+            {static_cast<std::int32_t>(i), static_cast<std::int32_t>(it.col()), static_cast<float>(it.value())});
+      }
     }
-  });
-}
-
-void ChebyshevInverse::project(VectorX& v, VectorX& coarse) const {
-  coarse.setZero(product_.cols());
-  for (Eigen::Index i = 0; i < rows_; ++i) coarse[patch_[static_cast<std::size_t>(i)]] += weight_[i] * v[i];
-  coarse_.solveInPlace(coarse);
-  v.noalias() -= product_ * coarse;
-}
-
-void ChebyshevInverse::project_transposed(VectorX& v, VectorX& coarse) const {
-  coarse.noalias() = product_.transpose() * v;
-  coarse_.solveInPlace(coarse);
-  for (Eigen::Index i = 0; i < rows_; ++i) v[i] -= weight_[i] * coarse[patch_[static_cast<std::size_t>(i)]];
+  }
+  exact.coarse.compute(coarse);
+  const Eigen::MatrixXd inverse = exact.coarse.solve(Eigen::MatrixXd::Identity(count, count));
+  coarse_ = (0.5 * (inverse + inverse.transpose())).cast<float>();
+  weight_ = weight.cast<float>();
 }
 
 /// Of M without the patches, by Lanczos from a vector that has a part of everything: an estimate from above.
-double ChebyshevInverse::smallest_eigenvalue() const {
+double ChebyshevInverse::smallest_eigenvalue(const Scaled& exact) const {
+  const VectorX weight = exact.root.cwiseInverse();
+  VectorX sums(static_cast<Eigen::Index>(patches()));
+  const auto project = [&](VectorX& v) {  // v -= M Q v
+    for (std::size_t k = 0; k < patches(); ++k) {
+      const std::int32_t begin = patch_start_[k];
+      const std::int32_t size = patch_start_[k + 1] - begin;
+      sums[static_cast<Eigen::Index>(k)] = weight.segment(begin, size).dot(v.segment(begin, size));
+    }
+    exact.coarse.solveInPlace(sums);
+    v.noalias() -= exact.product * sums;
+  };
   VectorX v(rows_);
   for (Eigen::Index i = 0; i < rows_; ++i) v[i] = std::sin(1.0 + 12.9898 * static_cast<double>(i));
-  VectorX coarse;
+  project(v);
+  v.normalize();
   VectorX next(rows_);
   VectorX before = VectorX::Zero(rows_);
-  project(v, coarse);
   std::vector<double> alpha;
   std::vector<double> beta{0.0};
   double estimate = std::numeric_limits<double>::infinity();
-  v.normalize();
   for (int k = 1; k <= kLanczosSteps; ++k) {
-    multiply(v, next);
-    project(next, coarse);
+    for (Eigen::Index i = 0; i < rows_; ++i) {
+      next[i] = v[i];
+      for (std::int32_t p = start_[at(i)]; p < start_[at(i) + 1]; ++p) next[i] += exact.value[at(p)] * v[col_[at(p)]];
+    }
+    project(next);
     alpha.push_back(v.dot(next));
     next -= alpha.back() * v + beta.back() * before;
     const double length = next.norm();
-    const bool exhausted = length < 1e-8;
+    const bool exhausted = length < kExhausted;
     if (exhausted || k % kLanczosCheck == 0) {
       const double last = std::exchange(estimate, smallest_of_tridiagonal(alpha, beta));
       if (exhausted || estimate > (1.0 - kLanczosChange) * last) break;
@@ -156,48 +193,95 @@ double ChebyshevInverse::smallest_eigenvalue() const {
   return estimate;
 }
 
-/// x = p(P M) residual, P = I - M Q: without P in every step the smooth part would come back through M. The residual,
-/// which P has been applied to, is used up.
-void ChebyshevInverse::iterate(VectorX& x, Work& work) const {
-  VectorX& residual = work.residual;
-  VectorX& step = work.step;
-  step = residual / centre_;
-  x = step;
-  const double sigma = centre_ / half_width_;
-  double rho = 1.0 / sigma;
+void ChebyshevInverse::solve_smooth(const Eigen::VectorXf& v, Work& work) const {
+  work.coarse.resize(static_cast<Eigen::Index>(patches()));
+  for (std::size_t k = 0; k < patches(); ++k) {
+    const std::int32_t begin = patch_start_[k];
+    const std::int32_t size = patch_start_[k + 1] - begin;
+    work.coarse[static_cast<Eigen::Index>(k)] = weight_.segment(begin, size).dot(v.segment(begin, size));
+  }
+  work.solved.noalias() = coarse_ * work.coarse;
+}
+
+void ChebyshevInverse::solve_smooth_of_product(const Eigen::VectorXf& v, Work& work) const {
+  work.coarse.resize(static_cast<Eigen::Index>(patches()));
+  for (std::size_t k = 0; k < patches(); ++k) {
+    const std::int32_t begin = patch_start_[k];
+    const std::int32_t size = patch_start_[k + 1] - begin;
+    work.coarse[static_cast<Eigen::Index>(k)] = near_.segment(begin, size).dot(v.segment(begin, size));
+  }
+  for (const Far& far : far_) work.coarse[far.patch] += far.value * v[far.row];
+  work.solved.noalias() = coarse_ * work.coarse;
+}
+
+void ChebyshevInverse::add_smooth(const Eigen::VectorXf& v, float part, const Eigen::VectorXf& coarse,
+                                  Eigen::VectorXf& to) const {
+  to.resize(rows_);
+  for (std::size_t k = 0; k < patches(); ++k) {
+    const std::int32_t begin = patch_start_[k];
+    const std::int32_t size = patch_start_[k + 1] - begin;
+    to.segment(begin, size) =
+        v.segment(begin, size) + (part * coarse[static_cast<Eigen::Index>(k)]) * weight_.segment(begin, size);
+  }
+}
+
+void ChebyshevInverse::subtract_product_of_smooth(const Eigen::VectorXf& coarse, Eigen::VectorXf& v) const {
+  for (std::size_t k = 0; k < patches(); ++k) {
+    const std::int32_t begin = patch_start_[k];
+    const std::int32_t size = patch_start_[k + 1] - begin;
+    v.segment(begin, size) -= coarse[static_cast<Eigen::Index>(k)] * near_.segment(begin, size);
+  }
+  for (const Far& far : far_) v[far.row] -= far.value * coarse[far.patch];
+}
+
+/// x = p(P M) residual, with P M v = M (v - Q M v): without P in every step the smooth part would come back through M.
+/// The residual, which P has been applied to, is used up.
+void ChebyshevInverse::iterate(Work& work) const {
+  Eigen::VectorXf& residual = work.residual;
+  work.step = residual / centre_;
+  work.x = work.step;
+  const float sigma = centre_ / half_width_;
+  float rho = 1.0F / sigma;
   for (int k = 1; k < steps_; ++k) {
-    multiply(step, work.product);
-    project(work.product, work.coarse);
-    residual -= work.product;
-    const double next = 1.0 / (2.0 * sigma - rho);
-    step = (next * rho) * step + (2.0 * next / half_width_) * residual;
-    x += step;
+    solve_smooth_of_product(work.step, work);
+    add_smooth(work.step, -1.0F, work.solved, work.without_smooth);
+    const float next = 1.0F / (2.0F * sigma - rho);
+    const float along = next * rho;
+    const float down = 2.0F * next / half_width_;
+    parallel_ranges(at(rows_), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t row = begin; row < end; ++row) {
+        const auto i = static_cast<Eigen::Index>(row);
+        residual[i] -= row_of_product(row, work.without_smooth);
+        work.step[i] = along * work.step[i] + down * residual[i];
+        work.x[i] += work.step[i];
+      }
+    });
     rho = next;
   }
 }
 
 void ChebyshevInverse::apply(const VectorX& b, VectorX& x, Work& work) const {
   // In the scaled unknowns y = D^1/2 x: M y = c, c = D^-1/2 b.
-  VectorX& c = work.residual;
-  c = root_.cwiseProduct(b);
-  if (patch_.empty()) {
-    x = root_.cwiseProduct(c);
+  work.residual.resize(rows_);
+  for (Eigen::Index i = 0; i < rows_; ++i) work.residual[i] = root_[i] * static_cast<float>(b[row_of_[at(i)]]);
+  x.resize(rows_);
+  if (col_.empty()) {
+    for (Eigen::Index i = 0; i < rows_; ++i) x[row_of_[at(i)]] = double{root_[i]} * work.residual[i];
     return;
   }
-  VectorX& coarse = work.exact;
-  coarse.setZero(product_.cols());
-  for (Eigen::Index i = 0; i < rows_; ++i) coarse[patch_[static_cast<std::size_t>(i)]] += weight_[i] * c[i];
-  coarse_.solveInPlace(coarse);
-  c.noalias() -= product_ * coarse;  // (I - M Q) c
-  iterate(x, work);
-  project_transposed(x, work.coarse);
-  for (Eigen::Index i = 0; i < rows_; ++i) x[i] += weight_[i] * coarse[patch_[static_cast<std::size_t>(i)]];
-  x = root_.cwiseProduct(x);
+  solve_smooth(work.residual, work);
+  work.first = work.solved;
+  subtract_product_of_smooth(work.first, work.residual);  // (I - M Q) c
+  iterate(work);
+  solve_smooth_of_product(work.x, work);  // (I - Q M), and Q c
+  work.first -= work.solved;
+  add_smooth(work.x, 1.0F, work.first, work.step);
+  for (Eigen::Index i = 0; i < rows_; ++i) x[row_of_[at(i)]] = double{root_[i]} * work.step[i];
 }
 
 std::size_t ChebyshevInverse::memory_bytes() const {
-  return sizeof(double) * (value_.capacity() + static_cast<std::size_t>(root_.size())) +
-         sizeof(std::int32_t) * (start_.capacity() + col_.capacity());
+  return sizeof(float) * (value_.capacity() + 3 * static_cast<std::size_t>(rows_)) +
+         sizeof(std::int32_t) * (start_.capacity() + col_.capacity() + row_of_.capacity());
 }
 
 }  // namespace rhexis::linalg

@@ -25,6 +25,12 @@ struct FrontKernels {
   void (*forward)(const double* L, int ld, int pivots, int boundary, double* r, int ldr, int columns);
   /// x_p = L_pp^-T (x_p - L_bp^T x_b); x over the pivots and the boundary below them.
   void (*backward)(const double* L, int ld, int pivots, int boundary, double* x);
+  /// W = [L_pp^-1; L_bp L_pp^-1] in single precision, (pivots + boundary) x pivots, of L with distance ld.
+  void (*invert_panel)(const double* L, int ld, int pivots, int boundary, float* W);
+  /// y = W x; W rows x columns with distance ld.
+  void (*multiply_single)(const float* W, int ld, int rows, int columns, const float* x, float* y);
+  /// y = W^T x; W ld x columns.
+  void (*multiply_transposed_single)(const float* W, int ld, int columns, const float* x, float* y);
   /// to += from.
   void (*add)(double* to, const double* from, int count);
 };

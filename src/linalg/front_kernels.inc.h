@@ -122,12 +122,38 @@ void backward(const double* L, int ld, int pivots, int boundary, double* x) {
   ConstMatrix(L, pivots, pivots, Eigen::OuterStride<>(ld)).transpose().triangularView<Eigen::Upper>().solveInPlace(top);
 }
 
+using SingleMatrix = Eigen::Map<const Eigen::MatrixXf, 0, Eigen::OuterStride<>>;
+
+void invert_panel(const double* L, int ld, int pivots, int boundary, float* W) {
+  if (pivots == 0) return;
+  const ConstMatrix panel(L, pivots + boundary, pivots, Eigen::OuterStride<>(ld));
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(pivots, pivots);
+  panel.topRows(pivots).triangularView<Eigen::Lower>().solveInPlace(inverse);
+  Eigen::Map<Eigen::MatrixXf> out(W, pivots + boundary, pivots);
+  out.topRows(pivots) = inverse.cast<float>();
+  if (boundary > 0) out.bottomRows(boundary) = (panel.bottomRows(boundary) * inverse).eval().cast<float>();
+}
+
+void multiply_single(const float* W, int ld, int rows, int columns, const float* x, float* y) {
+  Eigen::Map<Eigen::VectorXf>(y, rows).noalias() =
+      SingleMatrix(W, rows, columns, Eigen::OuterStride<>(ld)) * Eigen::Map<const Eigen::VectorXf>(x, columns);
+}
+
+void multiply_transposed_single(const float* W, int ld, int columns, const float* x, float* y) {
+  Eigen::Map<Eigen::VectorXf>(y, columns).noalias() =
+      SingleMatrix(W, ld, columns, Eigen::OuterStride<>(ld)).transpose() * Eigen::Map<const Eigen::VectorXf>(x, ld);
+}
+
 void add(double* to, const double* from, int count) {
   Eigen::Map<Eigen::VectorXd>(to, count) += Eigen::Map<const Eigen::VectorXd>(from, count);
 }
 
 }  // namespace
 
-FrontKernels make_front_kernels() { return {factor, solve_rows, subtract_lower, forward, backward, add}; }
+FrontKernels make_front_kernels() {
+  return {factor,   solve_rows,   subtract_lower,  forward,
+          backward, invert_panel, multiply_single, multiply_transposed_single,
+          add};
+}
 
 }  // namespace rhexis::linalg::RHEXIS_SIMD_NAMESPACE

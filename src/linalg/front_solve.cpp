@@ -149,41 +149,4 @@ void FrontTree::backward_at(std::span<const std::int32_t> nodes, const VectorX& 
   for (auto c = needed.rbegin(); c != needed.rend(); ++c) backward.solve(*c, work);
 }
 
-void FrontTree::solve(const VectorX& b, VectorX& x) const {
-  const Core& core = *core_;
-  RHEXIS_CHECK(core.outcome == FrontOutcome::ok, "not factored");
-  RHEXIS_CHECK(core.kept.empty(), "{} nodes are kept", core.kept.size());
-  RHEXIS_CHECK(b.size() == 3 * Eigen::Index{core.layout.node_count()}, "{} entries for {} nodes", b.size(),
-               core.layout.node_count());
-  // Each front has its right-hand side over pivots and boundary to itself, and takes what those before it have left.
-  std::vector<Eigen::Index> start(core.fronts.size() + 1, 0);
-  for (std::size_t c = 0; c < core.fronts.size(); ++c) start[c + 1] = start[c] + core.fronts[c]->size();
-  VectorX work(start.back());
-  const auto for_each_level = [&](std::size_t k, const auto& use) {
-    const std::span<const std::int32_t> together = core.direction.level(k);
-    parallel_ranges(together.size(), kLevelGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) use(*core.front(together[i]), work.data() + start[at(together[i])]);
-    });
-  };
-  for (std::size_t k = core.direction.levels(); k-- > 0;) {
-    for_each_level(k, [&](const Front& front, double* r) {
-      for (std::int32_t i = 0; i < front.pivots; ++i) r[i] = b[front.dofs[at(i)]];
-      std::fill_n(r + front.pivots, front.boundary(), 0.0);
-      for (const Incoming& from : front.incoming) {
-        const double* const left = work.data() + start[at(from.component)] + core.front(from.component)->pivots;
-        for (const Run& run : from.runs) front_kernels().add(r + run.to, left + run.from, run.length);
-      }
-      front_kernels().forward(front.panel.get(), front.ld(), front.pivots, front.boundary(), r, front.size(), 1);
-    });
-  }
-  x.setZero(b.size());
-  for (std::size_t k = 0; k < core.direction.levels(); ++k) {
-    for_each_level(k, [&](const Front& front, double* r) {
-      for (std::int32_t i = front.pivots; i < front.size(); ++i) r[i] = x[front.dofs[at(i)]];
-      front_kernels().backward(front.panel.get(), front.ld(), front.pivots, front.boundary(), r);
-      for (std::int32_t i = 0; i < front.pivots; ++i) x[front.dofs[at(i)]] = r[i];
-    });
-  }
-}
-
 }  // namespace rhexis::linalg

@@ -154,6 +154,16 @@ std::shared_ptr<const FrontTree> FrontTree::updated(const ElementSource& element
   return std::shared_ptr<const FrontTree>(new FrontTree(std::move(core)));
 }
 
+std::shared_ptr<const FrontTree> FrontTree::refactored(const ElementSource& elements) const {
+  auto core = std::make_unique<Core>(core_->layout);
+  core->null_pivot = core_->null_pivot;
+  core->set_kept(core_->kept);
+  core->direction = core_->direction;
+  core->fronts.resize(core_->fronts.size());
+  core->factor(elements, std::vector<char>(core->fronts.size(), 1));
+  return std::shared_ptr<const FrontTree>(new FrontTree(std::move(core)));
+}
+
 FrontOutcome FrontTree::outcome() const { return core_->outcome; }
 const std::vector<std::int32_t>& FrontTree::kept_dofs() const { return core_->kept_dofs; }
 const Eigen::MatrixXd& FrontTree::schur() const { return core_->schur; }

@@ -72,6 +72,8 @@ class FrontTree {
   /// The next version. `elements` as after the change.
   [[nodiscard]] std::shared_ptr<const FrontTree> updated(const ElementSource& elements,
                                                          const ElementChange& change) const;
+  /// All of it factored again, in the same order: other values of the same elements.
+  [[nodiscard]] std::shared_ptr<const FrontTree> refactored(const ElementSource& elements) const;
   ~FrontTree();
 
   [[nodiscard]] FrontOutcome outcome() const;
@@ -105,10 +107,6 @@ class FrontTree {
   void backward_at(std::span<const std::int32_t> nodes, const VectorX& x_kept, const Forward* forward,
                    const VectorX& amount, double load_amount, VectorX& x) const;
 
-  /// x = K^-1 b over all dofs, 3 * node_count, of a version that keeps no node; held dofs and dofs outside the assembly
-  /// come out zero, and b is not read there. x may be b. The loads of the elements are not in it.
-  void solve(const VectorX& b, VectorX& x) const;
-
   /// Fronts in all, and those that the last update factored again.
   [[nodiscard]] std::size_t front_count() const;
   [[nodiscard]] std::size_t fronts_made() const;
@@ -117,6 +115,7 @@ class FrontTree {
   [[nodiscard]] std::size_t memory_bytes() const;
 
  private:
+  friend class FrontSolver;
   struct Core;
   explicit FrontTree(std::unique_ptr<const Core> core);
   std::unique_ptr<const Core> core_;

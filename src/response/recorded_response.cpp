@@ -82,7 +82,11 @@ void RecordedResponse::look_up() {
   const record::store::Nearest nearest = lookup_.nearest(advances_);
   const bool has_others = advances_.size() < counts_.size() || before_first_ > 0;
   outside_ = nearest.outside || has_others;
-  use_ = {.topology = nearest.topology, .outside = outside_, .past_last = nearest.past_last, .torn_off = false};
+  use_ = {.topology = nearest.topology, .outside = outside_, .past_last = nearest.past_last};
+  const record::store::Numbering numbering(record_->head().parameters);
+  constexpr unsigned kNotMade = record::store::opened_nothing | record::store::unstable;
+  for (int k = nearest.topology; k > 0; k = numbering.parent(k))
+    use_.not_made = use_.not_made || (record_->record().flags[static_cast<std::size_t>(k)] & kNotMade) != 0;
   in_solve_.assign(mesh_.mesh().node_count(), 0);
   for (std::size_t t = 0; t < mesh_.mesh().tet_count(); ++t) {
     if (!mesh_.is_solved(TetId(t))) continue;

@@ -42,6 +42,17 @@ struct RecordUse {
   bool outside = false;    ///< some angle or length lies beyond the record, or some crack is none of it
   bool past_last = false;  ///< more advances than the record has: the first of them count
   bool torn_off = false;   ///< what is held has come off in a recorded topology that counts
+  /// An advance of the nearest opened nothing when it was recorded, or would have left a part that can move freely: its
+  /// answers are those of the body before that.
+  bool not_made = false;
+
+  /// Whatever one of the two does not know; the topology stays.
+  void add(const RecordUse& other) {
+    outside = outside || other.outside;
+    past_last = past_last || other.past_last;
+    torn_off = torn_off || other.torn_off;
+    not_made = not_made || other.not_made;
+  }
 };
 
 /// What following an edit took.

@@ -105,9 +105,7 @@ void Interaction::watch_record() {
   const std::optional<response::RecordUse> use = tear().record_use();
   if (!use) return;
   for (const std::string& remark : remarks_on(*use, said_)) listener_.says(wire::Level::warning, remark);
-  said_.outside = said_.outside || use->outside;
-  said_.past_last = said_.past_last || use->past_last;
-  said_.torn_off = said_.torn_off || use->torn_off;
+  said_.add(*use);
 }
 
 void Interaction::publish() {

@@ -124,13 +124,22 @@ void ReplaySource::seek(double to) {
   if (!std::isfinite(to)) return;
   time_ = std::clamp(to, 0.0, duration_);
   since_ = Clock::now();
-  // What shares the first tick with the first body belongs to the beginning.
-  const std::size_t end = std::max<std::size_t>(1, first_after(time_));
+  std::size_t end = std::max<std::size_t>(1, first_after(time_));  // at least the first body
   std::size_t begin = end - 1;
   while (begin > 0 && kind_of(frames_[begin]) != wire::Payload::Body) --begin;
+  end = with_state(begin, end);
   show(next_ > begin && next_ <= end ? next_ : begin, end, /*notices=*/false);
   next_ = end;
   send_timeline();
+}
+
+std::size_t ReplaySource::with_state(std::size_t begin, std::size_t end) const {
+  const auto is = [&](std::size_t k, wire::Payload kind) { return kind_of(frames_[k]) == kind; };
+  for (std::size_t k = begin; k < frames_.size(); ++k) {
+    if (k > begin && is(k, wire::Payload::Body)) break;
+    if (is(k, wire::Payload::State)) return std::max(end, k + 1);
+  }
+  return end;
 }
 
 void ReplaySource::play_on() {

@@ -45,6 +45,9 @@ class ReplaySource final : public CommandTarget {
   void carry_out(const wire::PayloadUnion& command);
   /// Shows time `to`: from the last Body before it, or from where it is, whichever is nearer.
   void seek(double to);
+  /// `end`, or behind it that of the first State of the body at `begin`: a body is sent some ticks before its first
+  /// state is, and a page cannot draw the one without the other.
+  [[nodiscard]] std::size_t with_state(std::size_t begin, std::size_t end) const;
   /// All that is due.
   void play_on();
   /// Frames [from, to) of the index: every one that must arrive, and the last State.

@@ -65,6 +65,9 @@ std::vector<std::string> remarks_on(const response::RecordUse& use, const respon
         fmt::format("the crack has run on more often than the record knows: topology {} stays", use.topology));
   if (use.torn_off && !before.torn_off)
     out.push_back("what is held has come off in the record: its force is that of topologies that have it");
+  if (use.not_made && !before.not_made)
+    out.push_back(fmt::format(
+        "an advance of topology {} could not be made when it was recorded: the body before it answers", use.topology));
   return out;
 }
 

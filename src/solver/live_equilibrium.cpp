@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 
 #include "base/check.h"
+#include "base/parallel.h"
 
 namespace rhexis::solver {
 namespace {
@@ -73,35 +74,24 @@ void LiveEquilibrium::follow(std::shared_ptr<const model::Model> model, model::L
   linear_.follow(model_, free_, state_, torn);
   make_room();
   if (!held_) return;
-  constrain_point();
-  build_tangent();
-  for (int j = 0; j < 3; ++j) {
-    VectorX& u = answer_u_[static_cast<std::size_t>(j)];
+  for (VectorX& u : answer_u_) {
     const Eigen::Index nodes = u.size() / 3;
     u.conservativeResize(state_.u.size());
     for (std::size_t i = 0; i < torn.copied.size(); ++i)
       u.segment<3>(3 * (nodes + static_cast<Eigen::Index>(i))) = u.segment<3>(3 * Eigen::Index{torn.copied[i]});
-    linalg::clear_held(free_, u);
-    refresh_answer(j, options_.worn_answer, options_.iterations);
   }
+  for (const std::int32_t parent : torn.copied)
+    answer_rotation_.push_back(answer_rotation_[static_cast<std::size_t>(parent)]);
+  build_tangent();
+  linear_.set_constraint(held_);
+  turn_answers();
+  for (int j = 0; j < 3; ++j) refresh_answer(j, options_.worn_answer, options_.iterations);
   update_compliance();
   now_ = evaluate(state_);
   correct_force();
 }
 
-Vec3 LiveEquilibrium::at_point(const VectorX& u) const {
-  Vec3 out = Vec3::Zero();
-  for (int k = 0; k < held_->count; ++k)
-    out += held_->weight[k] * u.segment<3>(3 * Eigen::Index{held_->node[static_cast<std::size_t>(k)]});
-  return out;
-}
-
-void LiveEquilibrium::add_at_point(const Vec3& force, VectorX& out) const {
-  for (int k = 0; k < held_->count; ++k)
-    out.segment<3>(3 * Eigen::Index{held_->node[static_cast<std::size_t>(k)]}) += held_->weight[k] * force;
-}
-
-Vec3 LiveEquilibrium::point() const { return held_ ? at_point(state_.u) : Vec3::Zero(); }
+Vec3 LiveEquilibrium::point() const { return held_ ? held_->of(state_.u) : Vec3::Zero(); }
 
 LiveEquilibrium::Trial LiveEquilibrium::evaluate(const model::State& state) {
   Trial out;
@@ -110,9 +100,9 @@ LiveEquilibrium::Trial LiveEquilibrium::evaluate(const model::State& state) {
   model::external_force(loading_, model_->space(), state.u, 1.0, external_);
   residual_.u -= external_;
   if (held_) {
-    multiplier_ = at_point(residual_.u) / held_->weight.squaredNorm();
-    add_at_point(-multiplier_, residual_.u);
-    add_at_point(multiplier_, external_);
+    multiplier_ = held_->of(residual_.u) / held_->weight.squaredNorm();
+    held_->add(-multiplier_, residual_.u);
+    held_->add(multiplier_, external_);
   }
   double square = 0.0;
   for (const std::int32_t dof : free_.dof) square += residual_.u[dof] * residual_.u[dof];
@@ -130,7 +120,7 @@ bool LiveEquilibrium::is_admissible(const Trial& trial) const {
 void LiveEquilibrium::build_tangent() {
   model_->tangent(state_, *scratch_, tangent_);
   model::subtract_load_stiffness(loading_, model_->space(), state_.u, 1.0, tangent_);
-  linear_.set_tangent(tangent_);
+  linear_.set_tangent(tangent_, state_);
 }
 
 /// K dz = N_j - K z.
@@ -143,7 +133,7 @@ int LiveEquilibrium::refresh_answer(int column, double tolerance, int most) {
   for (int round = 0; round < kAnswerRounds; ++round) {
     rhs_u_.setZero();
     rhs_lambda_.setZero();
-    add_at_point(Vec3::Unit(column), rhs_u_);
+    held_->add(Vec3::Unit(column), rhs_u_);
     const double left = size_.measure(rhs_u_, rhs_lambda_, u, lambda) / held_->weight.norm();
     if (left <= tolerance || iterations >= most) break;
     iterations += linear_
@@ -156,9 +146,34 @@ int LiveEquilibrium::refresh_answer(int column, double tolerance, int most) {
   return iterations;
 }
 
+/// Z as it would be of a body that has done nothing since but turn: T Z R^T, R the turn of the point.
+void LiveEquilibrium::turn_answers() {
+  const std::vector<Mat3>& now = linear_.rotation();
+  Mat3 of_point = Mat3::Zero();
+  for (int k = 0; k < held_->count; ++k) {
+    const auto node = static_cast<std::size_t>(held_->node[static_cast<std::size_t>(k)]);
+    of_point += held_->weight[k] * now[node] * answer_rotation_[node].transpose();
+  }
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const Mat3 turn = now[i] * answer_rotation_[i].transpose();
+    Mat3 Z;
+    for (std::size_t j = 0; j < 3; ++j)
+      Z.col(static_cast<Eigen::Index>(j)) = answer_u_[j].segment<3>(static_cast<Eigen::Index>(3 * i));
+    Z = (turn * Z * of_point.transpose()).eval();
+    for (std::size_t j = 0; j < 3; ++j)
+      answer_u_[j].segment<3>(static_cast<Eigen::Index>(3 * i)) = Z.col(static_cast<Eigen::Index>(j));
+  }
+  for (VectorX& column : answer_u_) linalg::clear_held(free_, column);
+  for (Eigen::Index p = 0; p < answer_lambda_[0].size(); ++p) {
+    const Vec3 row = of_point * Vec3(answer_lambda_[0][p], answer_lambda_[1][p], answer_lambda_[2][p]);
+    for (std::size_t j = 0; j < 3; ++j) answer_lambda_[j][p] = row[static_cast<Eigen::Index>(j)];
+  }
+  answer_rotation_ = now;
+}
+
 void LiveEquilibrium::update_compliance() {
   Mat3 C;
-  for (int j = 0; j < 3; ++j) C.col(j) = at_point(answer_u_[static_cast<std::size_t>(j)]);
+  for (int j = 0; j < 3; ++j) C.col(j) = held_->of(answer_u_[static_cast<std::size_t>(j)]);
   compliance_ = 0.5 * (C + C.transpose());
   stiffness_ = compliance_.inverse();
   from_gap_ = C.inverse();
@@ -172,7 +187,7 @@ void LiveEquilibrium::hold(const HeldPoint& point) {
                    support.dof / 3);
   }
   held_ = point;
-  constrain_point();
+  linear_.set_constraint(held_);
   force_.setZero();
   build_tangent();
   for (int j = 0; j < 3; ++j) {
@@ -180,19 +195,14 @@ void LiveEquilibrium::hold(const HeldPoint& point) {
     answer_lambda_[static_cast<std::size_t>(j)].setZero(state_.lambda.size());
     refresh_answer(j, kFirstAnswer, kMostFirstIterations);
   }
+  answer_rotation_ = linear_.rotation();
   update_compliance();
   now_ = evaluate(state_);
 }
 
-void LiveEquilibrium::constrain_point() {
-  std::vector<VectorX> rows(3, VectorX::Zero(state_.u.size()));
-  for (int j = 0; j < 3; ++j) add_at_point(Vec3::Unit(j), rows[static_cast<std::size_t>(j)]);
-  linear_.set_constraint(std::move(rows));
-}
-
 void LiveEquilibrium::let_go() {
   held_.reset();
-  linear_.set_constraint({});
+  linear_.set_constraint(std::nullopt);
   force_.setZero();
   now_ = evaluate(state_);
   good_ = state_;
@@ -221,7 +231,7 @@ void LiveEquilibrium::correct_force() {
 /// The first guess: the last tangent's answer to the move of the hand, shortened where a tet would invert. False: there
 /// is none.
 bool LiveEquilibrium::follow(const Vec3& hand, LiveFrame& frame) {
-  const Vec3 gap = hand - at_point(state_.u);
+  const Vec3 gap = hand - held_->of(state_.u);
   Trial next;
   for (int halving = 0; halving <= kHalvings; ++halving) {
     const Vec3 df = std::ldexp(1.0, -halving) * (from_gap_ * gap);
@@ -270,6 +280,19 @@ bool LiveEquilibrium::correct(LiveFrame& frame) {
   return false;
 }
 
+/// One column while the body moves, which turns them all; all of them where there is time, and to a fifth of that.
+void LiveEquilibrium::refresh_answers(LiveFrame& frame) {
+  if (frame.corrections > 0) {
+    turn_answers();
+    next_column_ = (next_column_ + 1) % 3;
+    frame.linear_iterations += refresh_answer(next_column_, options_.worn_answer, options_.iterations);
+  } else {
+    for (int j = 0; j < 3; ++j)
+      frame.linear_iterations += refresh_answer(j, 0.2 * options_.worn_answer, options_.iterations);
+  }
+  update_compliance();
+}
+
 /// A state that does not find back is given up for the last one that was near to equilibrium, or from which it set out.
 void LiveEquilibrium::keep_good(LiveFrame& frame) {
   if (now_.relative <= options_.late) {
@@ -295,6 +318,8 @@ LiveFrame LiveEquilibrium::advance(const Vec3* hand) {
   LiveFrame frame;
   worn_ = false;
   frame.refreshed = linear_.take_refreshed();
+  std::optional<OneThreadHere> beside;  // the refresh, which has a core of its own
+  if (linear_.is_refreshing()) beside.emplace();
   frame.reached = hand == nullptr || now_.relative <= options_.late;
   if (hand != nullptr && frame.reached && !follow(*hand, frame)) return frame;
   const int most = now_.relative > options_.late ? kLateCorrections : options_.corrections;
@@ -302,11 +327,7 @@ LiveFrame LiveEquilibrium::advance(const Vec3* hand) {
   while (frame.corrections < most && now_.relative > tolerance) {
     if (!correct(frame)) break;
   }
-  if (held_ && frame.corrections > 0) {
-    next_column_ = (next_column_ + 1) % 3;
-    frame.linear_iterations += refresh_answer(next_column_, options_.worn_answer, options_.iterations);
-    update_compliance();
-  }
+  if (held_) refresh_answers(frame);
   keep_good(frame);
   if (held_) correct_force();
   if (worn_) linear_.refresh(state_);

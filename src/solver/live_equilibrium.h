@@ -22,13 +22,6 @@
 
 namespace rhexis::solver {
 
-/// A surface point: the first `count` nodes, weights of sum 1.
-struct HeldPoint {
-  std::array<std::int32_t, 3> node{};
-  Vec3 weight = Vec3::Zero();
-  int count = 0;
-};
-
 struct LiveOptions {
   int corrections = 1;        ///< Newton corrections a frame at most
   double tolerance = 1e-4;    ///< relative residual below which a frame needs no (further) correction
@@ -93,7 +86,6 @@ class LiveEquilibrium {
     double relative = 0.0;
   };
   void make_room();
-  void constrain_point();
   LiveFrame advance(const Vec3* hand);
   bool follow(const Vec3& hand, LiveFrame& frame);
   bool correct(LiveFrame& frame);
@@ -104,8 +96,8 @@ class LiveEquilibrium {
   void build_tangent();
   /// Brings a column of Z to a relative residual; gives the iterations that it took.
   int refresh_answer(int column, double tolerance, int most);
-  [[nodiscard]] Vec3 at_point(const VectorX& u) const;
-  void add_at_point(const Vec3& force, VectorX& out) const;
+  void refresh_answers(LiveFrame& frame);
+  void turn_answers();
   void update_compliance();
   void correct_force();
 
@@ -127,6 +119,7 @@ class LiveEquilibrium {
 
   std::optional<HeldPoint> held_;
   std::array<VectorX, 3> answer_u_, answer_lambda_;  ///< columns of Z
+  std::vector<Mat3> answer_rotation_;                ///< per node, where Z belongs
   Mat3 compliance_ = Mat3::Zero();
   Mat3 stiffness_ = Mat3::Zero();
   Mat3 from_gap_ = Mat3::Zero();  ///< (N Z)^-1

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 #include <Eigen/LU>
 
 #include "base/check.h"
+#include "base/parallel.h"
 
 namespace rhexis::solver {
 namespace {
@@ -24,38 +26,45 @@ class TetTangents final : public linalg::ElementSource {
     const auto scratch = model.make_scratch();
     model.tet_tangents(state, *scratch, blocks_, coupling_);
     take_nodes(model, free);
-    out_.resize(nodes_.size());
-    for (std::size_t t = 0; t < nodes_.size(); ++t) out_[t] = is_nothing(t);
   }
-  /// Touched tets at `state`, the others as they were.
+  /// Touched tets at `state`, turned back by T, which is per node; the others as they were.
   void follow(const model::Model& model, const linalg::FreeDofs& free, const model::State& state,
-              const TornModel& torn) {
+              std::span<const std::int32_t> touched, const std::vector<Mat3>& T) {
     std::vector<double> blocks;
     std::vector<double> coupling;
     const auto scratch = model.make_scratch();
     model.tet_tangents(state, *scratch, blocks, coupling);
-    for (const std::int32_t tet : torn.touched) {
-      const auto at = static_cast<std::ptrdiff_t>(tet);
-      std::copy_n(blocks.begin() + 90 * at, 90, blocks_.begin() + 90 * at);
-      if (!coupling.empty()) std::copy_n(coupling.begin() + 12 * at, 12, coupling_.begin() + 12 * at);
-      out_[static_cast<std::size_t>(tet)] = is_nothing(static_cast<std::size_t>(tet));
-    }
     take_nodes(model, free);
+    for (const std::int32_t tet : touched) {
+      const auto t = static_cast<std::size_t>(tet);
+      const auto turn = [&](std::size_t a) -> const Mat3& { return T[static_cast<std::size_t>(nodes_[t][a])]; };
+      std::size_t at = 90 * t;
+      for (std::size_t a = 0; a < 4; ++a) {
+        for (std::size_t b = 0; b <= a; ++b, at += 9)
+          Block(blocks_.data() + at) = turn(a).transpose() * Block(blocks.data() + at) * turn(b);
+      }
+      for (std::size_t a = 0; a < 4 && !coupling.empty(); ++a) {
+        const std::size_t of = 12 * t + 3 * a;
+        Eigen::Map<Vec3>(coupling_.data() + of) = turn(a).transpose() * Eigen::Map<Vec3>(coupling.data() + of);
+      }
+    }
   }
   /// Per tet, m^3/Pa.
   void set_diagonal(const VectorX& d) { d_ = d; }
-  /// Adds this part of its mean diagonal to the diagonal of each tet.
+  /// Adds this part of its trace to the diagonal of each tet.
   void shift_by(double part) { shift_ = part; }
 
   std::int32_t node_count() const override { return static_cast<std::int32_t>(free_.size()); }
   std::int32_t element_count() const override { return static_cast<std::int32_t>(nodes_.size()); }
-  bool is_active(std::int32_t tet) const override { return out_[static_cast<std::size_t>(tet)] == 0; }
+  bool is_active(std::int32_t tet) const override {
+    return left_out_.empty() || left_out_[static_cast<std::size_t>(tet)] == 0;
+  }
   std::array<std::int32_t, 4> nodes(std::int32_t tet) const override { return nodes_[static_cast<std::size_t>(tet)]; }
   void stiffness(std::int32_t tet, linalg::ElementMatrix& out) const override {
     const double* block = blocks_.data() + 90 * static_cast<std::size_t>(tet);
     for (Eigen::Index a = 0; a < 4; ++a) {
       for (Eigen::Index b = 0; b <= a; ++b, block += 9) {
-        const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> K(block);
+        const Eigen::Map<const RowMajor> K(block);
         out.block<3, 3>(3 * a, 3 * b) = K;
         out.block<3, 3>(3 * b, 3 * a) = K.transpose();
       }
@@ -69,16 +78,15 @@ class TetTangents final : public linalg::ElementSource {
   void load(std::int32_t, linalg::ElementVector& out) const override { out.setZero(); }
   Vec3 node_load(std::int32_t) const override { return Vec3::Zero(); }
   unsigned free_components(std::int32_t node) const override { return free_[static_cast<std::size_t>(node)]; }
+
   std::size_t memory_bytes() const {
     return sizeof(double) * (blocks_.size() + coupling_.size()) + sizeof(nodes_[0]) * nodes_.size();
   }
 
  private:
-  /// A tet that the model leaves out.
-  std::uint8_t is_nothing(std::size_t tet) const {
-    const double* block = blocks_.data() + 90 * tet;
-    return std::all_of(block, block + 90, [](double value) { return value == 0.0; }) ? 1 : 0;
-  }
+  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  using Block = Eigen::Map<RowMajor>;
+
   void take_nodes(const model::Model& model, const linalg::FreeDofs& free) {
     const std::vector<std::int32_t>& connectivity = model.space().connectivity;
     nodes_.resize(connectivity.size() / 4);
@@ -86,17 +94,36 @@ class TetTangents final : public linalg::ElementSource {
       std::copy_n(connectivity.begin() + static_cast<std::ptrdiff_t>(4 * t), 4, nodes_[t].begin());
       std::sort(nodes_[t].begin(), nodes_[t].end());
     }
+    const std::span<const std::uint8_t> out = model.left_out();
+    left_out_.assign(out.begin(), out.end());
     free_.assign(model.space().node_count(), 0);
     for (const std::int32_t dof : free.dof) free_[static_cast<std::size_t>(dof / 3)] |= 1U << (dof % 3);
   }
 
   std::vector<double> blocks_, coupling_;
   std::vector<std::array<std::int32_t, 4>> nodes_;
-  std::vector<std::uint8_t> out_;  ///< per tet
-  std::vector<unsigned> free_;     ///< per node
+  std::vector<std::uint8_t> left_out_;  ///< per tet
+  std::vector<unsigned> free_;          ///< per node
   VectorX d_;
   double shift_ = 0.0;
 };
+
+/// Patches of C, and what else of it a preconditioner keeps: A and B set a weight alone.
+linalg::PressurePatches patches_of(const linalg::SaddleMatrix& K) {
+  linalg::PressurePatches out;
+  const linalg::ChebyshevInverse inverse(K.C, kPatchReduction);
+  out.set(K, [&](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
+    VectorX column;
+    VectorX solved;
+    linalg::ChebyshevInverse::Work work;
+    for (Eigen::Index j = 0; j < b.cols(); ++j) {
+      column = b.col(j);
+      inverse.apply(column, solved, work);
+      x.col(j) = solved;
+    }
+  });
+  return out;
+}
 
 linalg::ChebyshevInverse inverse_of_pressures(const model::Model& model) {
   const linalg::SaddleMatrix K = model.make_tangent();
@@ -114,60 +141,59 @@ void TornModel::add(const TornModel& next) {
 
 /// Never changes once made.
 struct LiveLinear::Preconditioner {
+  std::shared_ptr<const model::Model> model;  ///< whose C it knows
   TetTangents tets;
   std::shared_ptr<const linalg::FrontTree> tree;
+  std::shared_ptr<const linalg::FrontSolver> solver;  ///< of the tree
   linalg::PressurePatches patches;
+  std::vector<Mat3> rotation;  ///< per node, at its state
 
-  void solve(const VectorX& r, VectorX& z) const {
-    tree->solve(r, z);
+  void solve(const VectorX& r, VectorX& z, linalg::FrontSolver::Work& work) const {
+    solver->solve(r, z, work);
     patches.apply(r, z);
   }
 };
 
 LiveLinear::LiveLinear(std::shared_ptr<const model::Model> model, linalg::FreeDofs free, const model::State& state)
-    : model_(std::move(model)), free_(std::move(free)), c_inverse_(inverse_of_pressures(*model_)) {
-  preconditioner_ = prepare(*model_, free_, state);
+    : model_(std::move(model)),
+      free_(std::move(free)),
+      c_inverse_(inverse_of_pressures(*model_)),
+      rotations_(model_->space(), model_->left_out()) {
+  preconditioner_ = prepare(model_, free_, state, nullptr);
 }
 
 LiveLinear::~LiveLinear() = default;
 
-LiveLinear::Prepared LiveLinear::prepare(const model::Model& model, const linalg::FreeDofs& free,
-                                         const model::State& state) {
-  auto out = std::make_shared<Preconditioner>(Preconditioner{TetTangents(model, free, state), nullptr, {}});
+LiveLinear::Prepared LiveLinear::prepare(const std::shared_ptr<const model::Model>& model, const linalg::FreeDofs& free,
+                                         const model::State& state, const Preconditioner* before) {
+  auto out = std::make_shared<Preconditioner>(
+      Preconditioner{model, TetTangents(*model, free, state), nullptr, nullptr, {}, {}});
   TetTangents& tets = out->tets;
-  linalg::SaddleMatrix K = model.make_tangent();
+  linalg::SaddleMatrix K = model->make_tangent();
   if (K.C.rows() > 0) {
-    const auto scratch = model.make_scratch();
-    model.tangent(state, *scratch, K);
-    const linalg::ChebyshevInverse inverse(K.C, kPatchReduction);
-    out->patches.set(K, [&](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
-      VectorX column;
-      VectorX solved;
-      linalg::ChebyshevInverse::Work work;
-      for (Eigen::Index j = 0; j < b.cols(); ++j) {
-        column = b.col(j);
-        inverse.apply(column, solved, work);
-        x.col(j) = solved;
-      }
-    });
-    tets.set_diagonal(out->patches.diagonal());
+    model->tangent(state, *model->make_scratch(), K);
+    out->patches = before != nullptr && before->model == model ? before->patches : patches_of(K);
   }
+  NodeRotations(model->space(), model->left_out()).measure(state.u, out->rotation);
+  tets.set_diagonal(out->patches.diagonal());
   // A body under compression may have no definite tangent: what is solved is one that is stiffer.
   constexpr double kFirstShift = 0.03;
   constexpr double kLargestShift = 1e4;
   for (double shift = 0.0;; shift = std::max(kFirstShift, 3.0 * shift)) {
     tets.shift_by(shift);
-    out->tree = linalg::FrontTree::make(tets, {});
+    out->tree = before != nullptr ? before->tree->refactored(tets) : linalg::FrontTree::make(tets, {});
     if (out->tree->outcome() == linalg::FrontOutcome::ok) break;
     RHEXIS_CHECK(shift <= kLargestShift, "not positive definite with {} of its diagonal added", shift);
   }
-  if (K.C.rows() > 0) {
+  out->solver = std::make_shared<const linalg::FrontSolver>(*out->tree);
+  if (out->patches.count() > 0) {
     out->patches.correct(K, free, [&](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
       VectorX column;
       VectorX solved;
+      linalg::FrontSolver::Work work;
       for (Eigen::Index j = 0; j < b.cols(); ++j) {
         column = b.col(j);
-        out->tree->solve(column, solved);
+        out->solver->solve(column, solved, work);
         x.col(j) = solved;
       }
     });
@@ -178,12 +204,18 @@ LiveLinear::Prepared LiveLinear::prepare(const model::Model& model, const linalg
 LiveLinear::Prepared LiveLinear::followed(const Preconditioner& before, const model::State& state,
                                           const TornModel& torn) const {
   auto out = std::make_shared<Preconditioner>(before);
-  out->tets.follow(*model_, free_, state, torn);
+  for (const std::int32_t parent : torn.copied)
+    out->rotation.push_back(out->rotation[static_cast<std::size_t>(parent)]);
+  std::vector<Mat3> T;
+  rotations_.measure(state.u, T);
+  for (std::size_t i = 0; i < T.size(); ++i) T[i] = (T[i] * out->rotation[i].transpose()).eval();
+  out->tets.follow(*model_, free_, state, torn.touched, T);
   linalg::ElementChange change;
   change.copied = torn.copied;
   change.touched = torn.touched;
   out->tree = before.tree->updated(out->tets, change);
   if (out->tree->outcome() != linalg::FrontOutcome::ok) return nullptr;
+  out->solver = std::make_shared<const linalg::FrontSolver>(*out->tree, before.solver.get());
   out->patches.follow(torn.copied, free_);
   return out;
 }
@@ -193,21 +225,48 @@ void LiveLinear::follow(std::shared_ptr<const model::Model> model, linalg::FreeD
   model_ = std::move(model);
   free_ = std::move(free);
   c_inverse_ = inverse_of_pressures(*model_);
+  rotations_ = NodeRotations(model_->space(), model_->left_out());
+  rotation_.clear();
+  point_.reset();
   K_ = nullptr;
-  rows_.clear();
   if (task_.under_way()) {
     torn_since_.add(torn);
     state_then_ = state;
   }
   preconditioner_ = followed(*preconditioner_, state, torn);
-  if (!preconditioner_) preconditioner_ = prepare(*model_, free_, state);
+  if (!preconditioner_) preconditioner_ = prepare(model_, free_, state, nullptr);
 }
 
-void LiveLinear::set_tangent(const linalg::SaddleMatrix& K) {
+void LiveLinear::set_tangent(const linalg::SaddleMatrix& K, const model::State& state) {
   K_ = &K;
   const Eigen::Index dofs = K.displacement_unknowns();
   work_.resize(dofs);
   for (VectorX* v : {&p_, &q_}) v->resize(K.C.rows());
+  rotations_.measure(state.u, rotation_);
+  turn();
+}
+
+/// T, and P~^-1 N^T by it.
+void LiveLinear::turn() {
+  turn_.resize(rotation_.size());
+  for (std::size_t i = 0; i < turn_.size(); ++i) turn_[i] = rotation_[i] * preconditioner_->rotation[i].transpose();
+  if (!point_) return;
+  Mat3 answer;
+  for (int j = 0; j < 3; ++j) {
+    VectorX& of = answer_[static_cast<std::size_t>(j)];
+    of.setZero(of_nodes_.front().size());
+    for (int k = 0; k < point_->count; ++k) {
+      const Mat3& at = turn_[static_cast<std::size_t>(point_->node[static_cast<std::size_t>(k)])];
+      for (int c = 0; c < 3; ++c) of += point_->weight[k] * at(j, c) * of_nodes_[static_cast<std::size_t>(3 * k + c)];
+    }
+    for (std::size_t i = 0; i < turn_.size(); ++i) {
+      auto x = of.segment<3>(static_cast<Eigen::Index>(3 * i));
+      x = (turn_[i] * x).eval();
+    }
+    linalg::clear_held(free_, of);
+    answer.col(j) = point_->of(of);
+  }
+  answer_inverse_ = answer.inverse();
 }
 
 void LiveLinear::apply(const VectorX& x, VectorX& y) {
@@ -221,41 +280,45 @@ void LiveLinear::apply(const VectorX& x, VectorX& y) {
   project(y);
 }
 
-void LiveLinear::set_constraint(std::vector<VectorX> rows) {
-  RHEXIS_CHECK(rows.empty() || rows.size() == 3, "{} rows", rows.size());
-  rows_ = std::move(rows);
-  prepare_constraint();
+void LiveLinear::set_constraint(const std::optional<HeldPoint>& point) {
+  point_ = point;
+  solve_for_point();
 }
 
-void LiveLinear::prepare_constraint() {
-  if (rows_.empty()) return;
-  Mat3 gram;
-  Mat3 answer;
-  for (std::size_t j = 0; j < 3; ++j) {
-    answer_[j].resize(rows_[j].size());
-    preconditioner_->solve(rows_[j], answer_[j]);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      const auto column = static_cast<Eigen::Index>(j);
-      gram(row, column) = rows_[i].dot(rows_[j]);
-      answer(row, column) = rows_[i].dot(answer_[j]);
-    }
+void LiveLinear::solve_for_point() {
+  of_nodes_.clear();
+  if (!point_) return;
+  VectorX unit = VectorX::Zero(static_cast<Eigen::Index>(model_->space().dof_count()));
+  for (int k = 0; k < 3 * point_->count; ++k) {
+    const Eigen::Index dof = 3 * Eigen::Index{point_->node[static_cast<std::size_t>(k / 3)]} + k % 3;
+    unit[dof] = 1.0;
+    preconditioner_->solve(unit, of_nodes_.emplace_back(), front_work_);
+    unit[dof] = 0.0;
   }
-  gram_inverse_ = gram.inverse();
-  answer_inverse_ = answer.inverse();
+  if (!rotation_.empty()) turn();
 }
 
 /// r -= N^T (N N^T)^-1 N r.
 void LiveLinear::project(VectorX& r) const {
-  if (!constrained_) return;
-  const Vec3 along = gram_inverse_ * Vec3(rows_[0].dot(r), rows_[1].dot(r), rows_[2].dot(r));
-  for (std::size_t j = 0; j < 3; ++j) r -= along[static_cast<Eigen::Index>(j)] * rows_[j];
+  if (constrained_) point_->add(-point_->of(r) / point_->weight.squaredNorm(), r);
 }
 
-void LiveLinear::precondition(const VectorX& r, VectorX& z) const {
-  preconditioner_->solve(r, z);
+/// T P~^-1 T^T r, and what of it moves the point taken back.
+void LiveLinear::precondition(const VectorX& r, VectorX& z) {
+  turned_.resize(r.size());
+  for (std::size_t i = 0; i < turn_.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(3 * i);
+    turned_.segment<3>(at).noalias() = turn_[i].transpose() * r.segment<3>(at);
+  }
+  preconditioner_->solve(turned_, solved_, front_work_);
+  z.resize(r.size());
+  for (std::size_t i = 0; i < turn_.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(3 * i);
+    z.segment<3>(at).noalias() = turn_[i] * solved_.segment<3>(at);
+  }
+  linalg::clear_held(free_, z);
   if (!constrained_) return;
-  const Vec3 off = answer_inverse_ * Vec3(rows_[0].dot(z), rows_[1].dot(z), rows_[2].dot(z));
+  const Vec3 off = answer_inverse_ * point_->of(z);
   for (std::size_t j = 0; j < 3; ++j) z -= off[static_cast<Eigen::Index>(j)] * answer_[j];
 }
 
@@ -263,7 +326,7 @@ LiveSolve LiveLinear::solve(Point point, const VectorX& bu, const VectorX& bp, d
                             VectorX& xp) {
   RHEXIS_CHECK(K_ != nullptr, "no tangent");
   LiveSolve out;
-  constrained_ = point == Point::fixed && !rows_.empty();
+  constrained_ = point == Point::fixed && point_.has_value();
   r_ = bu;
   if (bp.size() > 0) {
     c_inverse_.apply(bp, p_, c_work_);
@@ -295,7 +358,12 @@ void LiveLinear::refresh(const model::State& state) {
   if (task_.under_way()) return;
   worked_ = 0;
   torn_since_ = {};
-  task_.start([this, model = model_, free = free_, state] { refreshed_ = prepare(*model, free, state); });
+  ready_ = false;
+  task_.start([this, state, model = model_, free = free_, before = preconditioner_] {
+    const OneThreadHere beside;
+    refreshed_ = prepare(model, free, state, before.get());
+    ready_ = true;
+  });
 }
 
 bool LiveLinear::take_refreshed() {
@@ -305,13 +373,14 @@ bool LiveLinear::take_refreshed() {
   if (!torn_since_.touched.empty()) next = followed(*next, state_then_, torn_since_);
   if (!next) return false;
   preconditioner_ = std::move(next);
-  prepare_constraint();
+  solve_for_point();
+  if (!point_ && !rotation_.empty()) turn();
   return true;
 }
 
 std::size_t LiveLinear::memory_bytes() const {
-  return preconditioner_->tree->memory_bytes() + preconditioner_->patches.memory_bytes() +
-         preconditioner_->tets.memory_bytes() + c_inverse_.memory_bytes();
+  return preconditioner_->tree->memory_bytes() + preconditioner_->solver->memory_bytes() +
+         preconditioner_->patches.memory_bytes() + preconditioner_->tets.memory_bytes() + c_inverse_.memory_bytes();
 }
 
 }  // namespace rhexis::solver

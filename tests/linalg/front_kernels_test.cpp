@@ -11,7 +11,9 @@ namespace rhexis::linalg {
 namespace {
 
 using Eigen::MatrixXd;
+using Eigen::MatrixXf;
 using Eigen::VectorXd;
+using Eigen::VectorXf;
 
 class FrontKernelsOf : public testing::TestWithParam<const char*> {
  protected:
@@ -28,6 +30,7 @@ MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, std::mt19937_64&
 
 // Diagonal entries of the size of the matrix: condition numbers below ten, so that errors are those of the sums.
 constexpr double kSame = 1e-14;
+constexpr double kSameSingle = 1e-6;
 
 TEST_P(FrontKernelsOf, factor_like_the_dense_factor) {
   std::mt19937_64 random(1);
@@ -63,6 +66,20 @@ TEST_P(FrontKernelsOf, factor_like_the_dense_factor) {
           top.transpose().solve(x.head(columns) - lower.bottomRows(below).transpose() * x.tail(below));
       kernels->backward(panel.data(), ld, columns, below, x.data());
       EXPECT_LT((x.head(columns) - solved).norm(), kSame * rows);
+      // And with its inverted blocks in single precision.
+      MatrixXf W(rows, columns);
+      kernels->invert_panel(panel.data(), ld, columns, below, W.data());
+      const MatrixXd inverse_of_top = top.solve(MatrixXd::Identity(columns, columns));
+      MatrixXd wanted(rows, columns);
+      wanted << inverse_of_top, lower.bottomRows(below) * inverse_of_top;
+      EXPECT_LT((W.cast<double>() - wanted).norm(), kSameSingle * wanted.norm());
+      const VectorXf p = random_matrix(columns, 1, random).cast<float>();
+      VectorXf product(rows);
+      kernels->multiply_single(W.data(), rows, rows, columns, p.data(), product.data());
+      EXPECT_LT((product.cast<double>() - wanted * p.cast<double>()).norm(), kSameSingle * rows);
+      VectorXf back(columns);
+      kernels->multiply_transposed_single(W.data(), rows, columns, product.data(), back.data());
+      EXPECT_LT((back.cast<double>() - wanted.transpose() * product.cast<double>()).norm(), kSameSingle * rows);
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "base/parallel.h"
+#include "linalg/front_solver.h"
 #include "mesh/generate.h"
 #include "tests/support/front_body.h"
 
@@ -20,6 +21,8 @@ using Nodes = std::vector<std::int32_t>;
 // Condition numbers stay below 1e4 (springs to the ground), both sides make relative errors of about 1e-16 times that,
 // and the oracle of the Schur complement inverts once more.
 constexpr double kSame = 1e-11;
+// The same in single precision, 6e-8.
+constexpr double kSameSingle = 1e-3;
 
 FrontBody plate(int nodes, bool rough = false) {
   return FrontBody(mesh::make_plate({{0.24, 0.24, 0.01}}, nodes).value(), 0.02, rough);
@@ -73,8 +76,9 @@ void expect_exact(const FrontTree& tree, const FrontBody& body, const Nodes& kep
     VectorX b = VectorX::Constant(oracle.load.size(), 1e300);  // held dofs are not read
     for (const std::int32_t dof : oracle.free.dof) b[dof] = oracle.load[dof];
     VectorX whole;
-    tree.solve(b, whole);
-    EXPECT_LT(difference(whole, oracle.solution), kSame);
+    FrontSolver::Work work;
+    FrontSolver(tree).solve(b, whole, work);
+    EXPECT_LT(difference(whole, oracle.solution), kSameSingle);
   }
 
   VectorX amount(columns);
@@ -316,6 +320,54 @@ TEST(FrontTree, says_when_an_element_is_negative_or_not_a_number) {
       EXPECT_EQ(tree->updated(bad, change)->outcome(), FrontOutcome::not_positive_definite) << scale;
     }
   }
+}
+
+TEST(FrontTree, factored_again_it_is_what_one_that_is_new_is) {
+  FrontBody body = plate(700, true);
+  const auto tree = FrontTree::make(body, {});
+  for (std::size_t e = 0; e < body.scale.size(); ++e) body.scale[e] = 1.0 + 0.1 * static_cast<double>(e % 7);
+  VectorX x;
+  VectorX expected;
+  tree->refactored(body)->backward(VectorX(), nullptr, VectorX(), 1.0, x);
+  FrontTree::make(body, {})->backward(VectorX(), nullptr, VectorX(), 1.0, expected);
+  EXPECT_TRUE(x == expected);
+}
+
+TEST(FrontSolver, takes_over_the_fronts_that_two_versions_share) {
+  std::mt19937_64 random(9);
+  FrontBody body = plate(3000);
+  const auto first = FrontTree::make(body, {});
+  const FrontSolver before(*first);
+  Editor edit(body, random);
+  edit.split(Vec3(9, 9, 0), 5.0);
+  const auto second = first->updated(body, edit.change);
+  const FrontSolver anew(*second);
+  const FrontSolver after(*second, &before);
+  const VectorX b = VectorX::LinSpaced(3 * body.node_count(), -1.0, 1.0);
+  FrontSolver::Work work;
+  VectorX x;
+  VectorX y = b;
+  anew.solve(b, x, work);
+  after.solve(y, y, work);  // in place
+  EXPECT_TRUE(x == y);
+  EXPECT_LT(after.memory_bytes(), 0.7 * static_cast<double>(second->memory_bytes()));
+}
+
+TEST(FrontSolver, gives_the_same_bits_on_any_number_of_threads) {
+  const FrontBody body(mesh::make_bar({{1, 1, 2}}, 3000).value(), 0.02);  // with fronts that threads share
+  const FrontSolver solver(*FrontTree::make(body, {}));
+  const VectorX b = VectorX::LinSpaced(3 * body.node_count(), -1.0, 1.0);
+  const auto solve = [&](int threads) {
+    set_thread_count(threads);
+    FrontSolver::Work work;
+    VectorX x;
+    solver.solve(b, x, work);
+    set_thread_count(0);
+    return x;
+  };
+  const VectorX one = solve(1);
+  EXPECT_TRUE(one == solve(2));
+  EXPECT_TRUE(one == solve(5));
 }
 
 /// All that a make and two updates give, in one vector.

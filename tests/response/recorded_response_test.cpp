@@ -37,6 +37,11 @@ TEST_P(RecordedResponseOf, IsTheExactOneAtEveryRecordedCrack) {
       const RecordUse use = *recorded->record_use();
       EXPECT_EQ(use.topology, number);
       EXPECT_FALSE(use.outside || use.past_last || use.torn_off) << number << ", hold " << k;
+      bool made = true;
+      for (int n = number; n > 0; n = plate.numbering().parent(n))
+        made = made && (plate.record->record().flags[static_cast<std::size_t>(n)] &
+                        (record::store::opened_nothing | record::store::unstable)) == 0;
+      EXPECT_EQ(use.not_made, !made);
       const VectorX force = VectorX::LinSpaced(3 * point.count, -0.7, 1.1);
       VectorX u;
       VectorX wanted;

@@ -247,6 +247,51 @@ TEST_F(RecordedPlate, IsPlayedAsItWasSeenAndSoughtBothWays) {
   (*source)->stop();
 }
 
+/// The physics may be some ticks on before it shows the state of a body that it has sent.
+TEST(Replay, BeginsWithTheFirstStateOfTheBodyHoweverLateItIs) {
+  const test::TestFolder folder("late-state");
+  const std::filesystem::path path = folder.path() / "late.h5";
+  Expected<std::unique_ptr<Recorder>> recorder = Recorder::create(path, RecordingHead());
+  ASSERT_TRUE(recorder.has_value()) << recorder.error().message();
+  const auto add_state = [&](std::uint64_t tick, std::uint32_t epoch) {
+    wire::StateT state;
+    state.epoch = epoch;
+    (*recorder)->add_frame(tick, wire::encode(std::move(state)));
+  };
+  (*recorder)->add_frame(0, wire::encode(wire::BodyT()));
+  add_state(7, 1);
+  add_state(40, 2);
+  (*recorder)->add_frame(50, wire::encode(wire::BodyT()));
+  (*recorder)->add_frame(90, wire::encode(wire::BodyT()));
+  add_state(95, 3);
+  (*recorder)->add_scene(1, {.file = "a.toml", .text = "", .overrides = {}, .mesh = nullptr});
+  (*recorder)->close();
+
+  test::KeptFrames shown;
+  Expected<std::unique_ptr<ReplaySource>> source = ReplaySource::open(path, shown);
+  ASSERT_TRUE(source.has_value()) << source.error().message();
+  (*source)->start();
+  ASSERT_TRUE(wait_until([&] { return shown.count(wire::Payload::Timeline) > 0; }));
+  ASSERT_EQ(shown.count(wire::Payload::State), 1U);
+  EXPECT_EQ(shown.last(wire::Payload::State).AsState()->epoch, 1U);
+  // Of a body without a state there is none to show; that of the last one comes with it.
+  const auto states_after = [&](double time) {
+    const std::size_t timelines = shown.count(wire::Payload::Timeline);
+    wire::SeekT seek;
+    seek.time = time;
+    (*source)->post(payload(seek));
+    EXPECT_TRUE(wait_until([&] {
+      return shown.count(wire::Payload::Timeline) > timelines &&
+             shown.last(wire::Payload::Timeline).AsTimeline()->time == time;
+    }));
+    return shown.count(wire::Payload::State);
+  };
+  EXPECT_EQ(states_after(0.060), 1U);
+  EXPECT_EQ(states_after(0.091), 2U);
+  EXPECT_EQ(shown.last(wire::Payload::State).AsState()->epoch, 3U);
+  (*source)->stop();
+}
+
 /// What the kill test starts: records until it is killed, or a minute is over.
 TEST(RecordingKill, DISABLED_Victim) {
   const char* folder = std::getenv("RHEXIS_KILL_FOLDER");

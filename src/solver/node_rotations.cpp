@@ -1,0 +1,60 @@
+#include "solver/node_rotations.h"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "base/check.h"
+
+namespace rhexis::solver {
+namespace {
+
+/// Of Newton's iteration for the polar factor, which is quadratic: strains of a half are rotations to 1e-6 after these.
+constexpr int kIterations = 4;
+
+Mat3 rotation_of(const Mat3& F) {
+  const double determinant = F.determinant();
+  if (!(determinant > 0.0) || !std::isfinite(determinant)) return Mat3::Identity();
+  Mat3 R = F / std::cbrt(determinant);
+  for (int k = 0; k < kIterations; ++k) {
+    Mat3 cofactor;  // det(R) R^-T
+    cofactor << R.row(1).cross(R.row(2)), R.row(2).cross(R.row(0)), R.row(0).cross(R.row(1));
+    R = (0.5 * (R + cofactor / R.row(0).dot(cofactor.row(0)))).eval();
+  }
+  return R.allFinite() ? R : Mat3(Mat3::Identity());
+}
+
+}  // namespace
+
+NodeRotations::NodeRotations(const model::DisplacementSpace& space, std::span<const std::uint8_t> left_out)
+    : nodes_(space.node_count()) {
+  RHEXIS_CHECK(space.order == 1, "order {}", space.order);
+  const std::size_t count = space.connectivity.size() / 4;
+  tets_.reserve(count);
+  for (std::size_t t = 0; t < count; ++t) {
+    if (!left_out.empty() && left_out[t] != 0) continue;
+    Tet& tet = tets_.emplace_back();
+    for (std::size_t a = 0; a < 4; ++a) tet.node[a] = space.connectivity[4 * t + a];
+    const auto X = [&](std::size_t a) -> const Vec3& { return space.nodes[static_cast<std::size_t>(tet.node[a])]; };
+    Mat3 edges;
+    for (std::size_t a = 0; a < 3; ++a) edges.row(static_cast<Eigen::Index>(a)) = X(a + 1) - X(0);
+    tet.volume = std::abs(edges.determinant()) / 6.0;
+    tet.slope.rightCols<3>() = tet.volume * edges.inverse();
+    tet.slope.col(0) = -tet.slope.rightCols<3>().rowwise().sum();
+  }
+}
+
+void NodeRotations::measure(const VectorX& u, std::vector<Mat3>& out) const {
+  out.assign(nodes_, Mat3::Zero());
+  for (const Tet& tet : tets_) {
+    Mat3 F = tet.volume * Mat3::Identity();
+    for (std::size_t a = 0; a < 4; ++a)
+      F.noalias() +=
+          u.segment<3>(3 * Eigen::Index{tet.node[a]}) * tet.slope.col(static_cast<Eigen::Index>(a)).transpose();
+    for (const std::int32_t node : tet.node) out[static_cast<std::size_t>(node)] += F;
+  }
+  for (Mat3& F : out) F = rotation_of(F);
+}
+
+}  // namespace rhexis::solver
