@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -130,16 +131,25 @@ int LiveEquilibrium::refresh_answer(int column, double tolerance, int most) {
   size_.set_system(tangent_, free_);
   int iterations = 0;
   // The polynomial for C^-1 leaves something of the pressure's row: once more from what is left.
-  for (int round = 0; round < kAnswerRounds; ++round) {
+  double before = std::numeric_limits<double>::infinity();
+  for (int round = 0;; ++round) {
     rhs_u_.setZero();
     rhs_lambda_.setZero();
     held_->add(Vec3::Unit(column), rhs_u_);
     const double left = size_.measure(rhs_u_, rhs_lambda_, u, lambda) / held_->weight.norm();
-    if (left <= tolerance || iterations >= most) break;
+    if (round > 0 && !(left < before)) {  // no answer, near where the body gives way: as it was
+      u -= du_;
+      lambda -= dlambda_;
+      worn_ = true;
+      return 0;
+    }
+    if (left <= tolerance || iterations >= most || round == kAnswerRounds) break;
+    before = left;
     iterations += linear_
                       .solve(LiveLinear::Point::free, size_.u(), size_.p(), std::min(0.5, 0.5 * tolerance / left),
                              most - iterations, du_, dlambda_)
                       .iterations;
+    if (!du_.allFinite() || !dlambda_.allFinite()) break;
     u += du_;
     lambda += dlambda_;
   }
@@ -174,6 +184,7 @@ void LiveEquilibrium::turn_answers() {
 void LiveEquilibrium::update_compliance() {
   Mat3 C;
   for (int j = 0; j < 3; ++j) C.col(j) = held_->of(answer_u_[static_cast<std::size_t>(j)]);
+  if (!C.inverse().allFinite()) return;  // that of before, until there is an answer
   compliance_ = 0.5 * (C + C.transpose());
   stiffness_ = compliance_.inverse();
   from_gap_ = C.inverse();
