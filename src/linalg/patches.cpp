@@ -1,7 +1,5 @@
 #include "linalg/patches.h"
 
-#include <algorithm>
-
 #include "base/check.h"
 
 namespace rhexis::linalg {
@@ -65,7 +63,7 @@ std::vector<std::int32_t> cut_into_patches(const CsrPattern& pattern, std::int32
       ++count;
     }
   }
-  for (std::int32_t& of : patch) of = of < 0 ? std::max(0, count - 1) : of;
+  for (std::int32_t& of : patch) of = of < 0 ? count : of;
   return patch;
 }
 

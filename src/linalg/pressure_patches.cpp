@@ -53,17 +53,30 @@ void PressurePatches::set(const SaddleMatrix& K, const Solve& c_inverse) {
   const double bulk = trace_of_product(K.B, d_);
   const std::vector<std::int32_t> patch =
       cut_into_patches(*C.pattern, std::max(kPatchSize, (m - 1) / kMostPatches + 1));
-  const std::int32_t count = *std::max_element(patch.begin(), patch.end()) + 1;
+  // A pressure that no other is coupled to has no smooth part.
+  std::vector<std::uint8_t> coupled(static_cast<std::size_t>(m), 0);
+  for (std::int32_t p = 0; p < m; ++p) {
+    const auto first = static_cast<std::size_t>(C.pattern->row_start[static_cast<std::size_t>(p)]);
+    const auto last = static_cast<std::size_t>(C.pattern->row_start[static_cast<std::size_t>(p) + 1]);
+    for (std::size_t i = first; i + 1 < last; ++i)
+      coupled[static_cast<std::size_t>(p)] = coupled[static_cast<std::size_t>(C.pattern->column[i])] = 1;
+  }
+  std::int32_t count = 0;
+  const auto for_each_coupled = [&](const auto& use) {
+    for (std::int32_t p = 0; p < m; ++p)
+      if (coupled[static_cast<std::size_t>(p)] != 0) use(p, patch[static_cast<std::size_t>(p)]);
+  };
+  for_each_coupled([&](std::int32_t, std::int32_t of) { count = std::max(count, of + 1); });
   smooth_.setZero(m, count);
-  for (std::int32_t p = 0; p < m; ++p) smooth_(p, patch[static_cast<std::size_t>(p)]) = 1.0;
+  for_each_coupled([&](std::int32_t p, std::int32_t of) { smooth_(p, of) = 1.0; });
   const Eigen::MatrixXd indicators = smooth_;
   c_inverse(indicators, smooth_);
   Eigen::MatrixXd of_c = Eigen::MatrixXd::Zero(count, count);  // W^T C^-1 W
   VectorX of_d = VectorX::Zero(count);                         // W^T diag(C)^-1 W
-  for (std::int32_t p = 0; p < m; ++p) {
-    of_c.row(patch[static_cast<std::size_t>(p)]) += smooth_.row(p);
-    of_d[patch[static_cast<std::size_t>(p)]] += 1.0 / d_[p];
-  }
+  for_each_coupled([&](std::int32_t p, std::int32_t of) {
+    of_c.row(of) += smooth_.row(p);
+    of_d[of] += 1.0 / d_[p];
+  });
   // The patches have to be smoother than the weight makes up for: G definite. Less weight makes it so, unless C = D up
   // to rounding or the patches oscillate; there is nothing to put back then.
   double weight = std::max(1.0, bulk > 0.0 ? kBulkShare * trace(K.A) / bulk : 1.0);
@@ -78,7 +91,7 @@ void PressurePatches::set(const SaddleMatrix& K, const Solve& c_inverse) {
     }
   }
   d_ /= weight;
-  for (std::int32_t p = 0; p < m; ++p) smooth_(p, patch[static_cast<std::size_t>(p)]) -= 1.0 / d_[p];
+  for_each_coupled([&](std::int32_t p, std::int32_t of) { smooth_(p, of) -= 1.0 / d_[p]; });
 }
 
 void PressurePatches::correct(const SaddleMatrix& K, const FreeDofs& free, const Solve& p_inverse) {

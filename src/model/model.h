@@ -3,8 +3,10 @@
 /// What a deformation model is to the rest of the house: constant data, a State that changes, a Scratch passed in. No
 /// `mutable`, no hidden state: two threads may evaluate one model with two scratches.
 
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -60,6 +62,8 @@ class Model {
   /// True when lambda is continuous with one unknown per vertex (Taylor-Hood), false when it is one per tet.
   [[nodiscard]] virtual bool pressure_at_vertices() const { return false; }
   [[nodiscard]] virtual bool is_linear() const { return false; }
+  /// Per tet, nonzero where it is no part of the body; empty: all are.
+  [[nodiscard]] virtual std::span<const std::uint8_t> left_out() const { return {}; }
   /// False for models whose law has no answer at J <= 0 (a step into that is cut); true where inversion is defined
   /// (linear, mass-spring, corotated, St. Venant-Kirchhoff): it is counted and reported instead.
   [[nodiscard]] virtual bool allows_inversion() const = 0;

@@ -26,6 +26,7 @@ void set_zero(std::vector<double>& values) {
 P1Model::P1Model(const mesh::TetMesh& mesh, const element::TetKernels& kernels, LeftOut left_out)
     : space_(make_p1_space(mesh)),
       tet_count_(mesh.tet_count()),
+      left_out_(left_out.begin(), left_out.end()),
       kernels_(kernels),
       batches_(mesh, left_out),
       pattern_(std::make_shared<linalg::BlockPattern>(

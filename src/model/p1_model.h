@@ -15,6 +15,7 @@ namespace rhexis::model {
 class P1Model : public Model {
  public:
   [[nodiscard]] const DisplacementSpace& space() const override { return space_; }
+  [[nodiscard]] LeftOut left_out() const override { return left_out_; }
   [[nodiscard]] std::unique_ptr<Scratch> make_scratch() const override;
   [[nodiscard]] linalg::SaddleMatrix make_tangent() const override;
   [[nodiscard]] std::size_t memory_bytes() const override;
@@ -41,6 +42,7 @@ class P1Model : public Model {
  private:
   DisplacementSpace space_;
   std::size_t tet_count_ = 0;
+  std::vector<std::uint8_t> left_out_;
   const element::TetKernels& kernels_;
   element::TetBatches batches_;
   std::shared_ptr<const linalg::BlockPattern> pattern_;  ///< of A

@@ -6,14 +6,6 @@
 #include "mesh/surface.h"
 
 namespace rhexis::model {
-namespace {
-
-/// The lambda of a tet left out is in no equation but its own. So many times the mean of the others on its diagonal
-/// keeps it out of sums over many tets as well, which preconditioners take of C^-1. Its own volume, which nobody keeps
-/// above zero any more, is not read.
-constexpr double kLeftOut = 1e6;
-
-}  // namespace
 
 linalg::SymmetricCsr make_pressure_matrix(const mesh::TetMesh& mesh, double kappa, double beta, LeftOut left_out) {
   const auto is_out = [&](std::size_t t) { return !left_out.empty() && left_out[t] != 0; };
@@ -59,9 +51,11 @@ linalg::SymmetricCsr make_pressure_matrix(const mesh::TetMesh& mesh, double kapp
     whole += diagonal(t);
     ++count;
   }
+  // The lambda of a tet left out is in no equation but its own, where any number does; its volume is not read, which
+  // nobody keeps above zero any more.
   const double mean = count > 0 ? whole / static_cast<double>(count) : 1.0 / kappa;
   for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
-    if (is_out(t)) diagonal(t) = kLeftOut * (1.0 + beta) * mean;
+    if (is_out(t)) diagonal(t) = mean;
   }
   next = 0;
   for (std::size_t t = 0; t < mesh.tet_count(); ++t) {

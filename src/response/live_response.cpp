@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
 
 #include "base/check.h"
 #include "base/clock.h"
@@ -21,6 +21,22 @@ constexpr double kLongestStep = 0.03;
 constexpr double kFree = 1e-3;
 /// Times that a body without a hand gives up before it begins again from rest.
 constexpr int kMostGivenUp = 2;
+
+/// Another frame like it would do nothing else.
+bool is_stuck(const solver::LiveFrame& frame) {
+  return frame.reached && !frame.gave_up && frame.corrections == 0 && frame.linear_iterations == 0;
+}
+
+/// The least of its eigenvalues as a part of the largest: a body that is about to give way has a softness without
+/// bound, or below zero, and the haptic loop is to have a law that pulls back.
+constexpr double kLeastSoftness = 1e-3;
+
+Mat3 made_definite(const Mat3& compliance) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(compliance);
+  Vec3 value = solver.eigenvalues().cwiseAbs();
+  value = value.cwiseMax(kLeastSoftness * value.maxCoeff());
+  return solver.eigenvectors() * value.asDiagonal() * solver.eigenvectors().transpose();
+}
 
 bool acts(const model::Loading& loading) {
   return !loading.dead_force.isZero(0.0) || !loading.pressures.empty() ||
@@ -117,12 +133,12 @@ void LiveResponse::update_contact() {
   rest_.setZero(count);
   if (!live_->holds() || !point_) return;
   const double square = point_->weight.squaredNorm();
-  const Vec3 rest = live_->point() - live_->compliance() * live_->force();
+  const Mat3 C = made_definite(live_->compliance());
+  const Vec3 rest = live_->point() - C * live_->force();
   for (int a = 0; a < point_->count; ++a) {
     rest_.segment<3>(3 * a) = rest;
     for (int b = 0; b < point_->count; ++b)
-      compliance_.block<3, 3>(3 * a, 3 * b) =
-          point_->weight[a] * point_->weight[b] / (square * square) * live_->compliance();
+      compliance_.block<3, 3>(3 * a, 3 * b) = point_->weight[a] * point_->weight[b] / (square * square) * C;
   }
 }
 
@@ -130,7 +146,7 @@ void LiveResponse::update_contact() {
 /// loads put it while nothing presses.
 Vec3 LiveResponse::target(const Vec3& hand) const {
   if (mode_ == ContactMode::hold) return hand;
-  const Mat3& C = live_->compliance();
+  const Mat3 C = made_definite(live_->compliance());
   const Vec3& n = point_->normal;
   const Vec3 rest = live_->point() - C * live_->force();
   const double force = n.dot(hand - rest) / n.dot(C * n);
@@ -166,10 +182,11 @@ MoveReport LiveResponse::move(const Vec3& hand) {
       given_up_ = frame.gave_up ? given_up_ + 1 : given_up_;
       if (given_up_ == kMostGivenUp) begin_again();
     }
-    out.at_rest = frame.reached && frame.corrections == 0 && frame.residual <= tolerance;
+    out.at_rest =
+        frame.reached && frame.corrections == 0 && frame.linear_iterations == 0 && frame.residual <= tolerance;
     if (out.at_rest) given_up_ = 0;
     out.late = frame.trouble;
-    if (out.at_rest || (frame.corrections == 0 && frame.reached && !frame.gave_up)) break;
+    if (out.at_rest || is_stuck(frame)) break;
   }
   out.near = live_->residual() <= settings_.live.late;
   update_contact();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -31,8 +32,8 @@ constexpr double kProgress = 0.9;
 /// Corrections of a frame that is late, and how much further each is solved.
 constexpr int kLateCorrections = 2;
 constexpr int kLateIterations = 3;
-/// Iterations more than when it was new, from which on a preconditioner is made anew at the present state.
-constexpr int kWornIterations = 2;
+/// Iterations from which on a preconditioner is made anew at the present state.
+constexpr int kWornIterations = 4;
 
 }  // namespace
 
@@ -74,8 +75,6 @@ void LiveEquilibrium::follow(std::shared_ptr<const model::Model> model, model::L
   linear_.follow(model_, free_, state_, torn);
   make_room();
   if (!held_) return;
-  linear_.set_constraint(held_);
-  build_tangent();
   for (VectorX& u : answer_u_) {
     const Eigen::Index nodes = u.size() / 3;
     u.conservativeResize(state_.u.size());
@@ -84,6 +83,8 @@ void LiveEquilibrium::follow(std::shared_ptr<const model::Model> model, model::L
   }
   for (const std::int32_t parent : torn.copied)
     answer_rotation_.push_back(answer_rotation_[static_cast<std::size_t>(parent)]);
+  build_tangent();
+  linear_.set_constraint(held_);
   turn_answers();
   for (int j = 0; j < 3; ++j) refresh_answer(j, options_.worn_answer, options_.iterations);
   update_compliance();
@@ -130,16 +131,25 @@ int LiveEquilibrium::refresh_answer(int column, double tolerance, int most) {
   size_.set_system(tangent_, free_);
   int iterations = 0;
   // The polynomial for C^-1 leaves something of the pressure's row: once more from what is left.
-  for (int round = 0; round < kAnswerRounds; ++round) {
+  double before = std::numeric_limits<double>::infinity();
+  for (int round = 0;; ++round) {
     rhs_u_.setZero();
     rhs_lambda_.setZero();
     held_->add(Vec3::Unit(column), rhs_u_);
     const double left = size_.measure(rhs_u_, rhs_lambda_, u, lambda) / held_->weight.norm();
-    if (left <= tolerance || iterations >= most) break;
+    if (round > 0 && !(left < before)) {  // no answer, near where the body gives way: as it was
+      u -= du_;
+      lambda -= dlambda_;
+      worn_ = true;
+      return 0;
+    }
+    if (left <= tolerance || iterations >= most || round == kAnswerRounds) break;
+    before = left;
     iterations += linear_
                       .solve(LiveLinear::Point::free, size_.u(), size_.p(), std::min(0.5, 0.5 * tolerance / left),
                              most - iterations, du_, dlambda_)
                       .iterations;
+    if (!du_.allFinite() || !dlambda_.allFinite()) break;
     u += du_;
     lambda += dlambda_;
   }
@@ -174,6 +184,7 @@ void LiveEquilibrium::turn_answers() {
 void LiveEquilibrium::update_compliance() {
   Mat3 C;
   for (int j = 0; j < 3; ++j) C.col(j) = held_->of(answer_u_[static_cast<std::size_t>(j)]);
+  if (!C.inverse().allFinite()) return;  // that of before, until there is an answer
   compliance_ = 0.5 * (C + C.transpose());
   stiffness_ = compliance_.inverse();
   from_gap_ = C.inverse();
@@ -190,12 +201,12 @@ void LiveEquilibrium::hold(const HeldPoint& point) {
   linear_.set_constraint(held_);
   force_.setZero();
   build_tangent();
-  answer_rotation_ = linear_.rotation();
   for (int j = 0; j < 3; ++j) {
     answer_u_[static_cast<std::size_t>(j)].setZero(state_.u.size());
     answer_lambda_[static_cast<std::size_t>(j)].setZero(state_.lambda.size());
     refresh_answer(j, kFirstAnswer, kMostFirstIterations);
   }
+  answer_rotation_ = linear_.rotation();
   update_compliance();
   now_ = evaluate(state_);
 }
@@ -263,8 +274,7 @@ bool LiveEquilibrium::correct(LiveFrame& frame) {
   const LiveSolve solve =
       linear_.solve(LiveLinear::Point::fixed, rhs_u_, rhs_lambda_, options_.forcing, most, du_, dlambda_);
   frame.linear_iterations += solve.iterations;
-  if (iterations_when_new_ == 0) iterations_when_new_ = std::max(1, solve.iterations);
-  worn_ = worn_ || solve.iterations >= iterations_when_new_ + kWornIterations || solve.truncated;
+  worn_ = worn_ || solve.iterations >= kWornIterations || solve.truncated;
   for (int halving = 0; halving <= kHalvings; ++halving) {
     const double part = std::ldexp(1.0, -halving);
     trial_.u = state_.u + part * du_;
@@ -279,6 +289,19 @@ bool LiveEquilibrium::correct(LiveFrame& frame) {
   frame.trouble = "a correction would make it worse";
   now_ = evaluate(state_);
   return false;
+}
+
+/// One column while the body moves, which turns them all; all of them where there is time, and to a fifth of that.
+void LiveEquilibrium::refresh_answers(LiveFrame& frame) {
+  if (frame.corrections > 0) {
+    turn_answers();
+    next_column_ = (next_column_ + 1) % 3;
+    frame.linear_iterations += refresh_answer(next_column_, options_.worn_answer, options_.iterations);
+  } else {
+    for (int j = 0; j < 3; ++j)
+      frame.linear_iterations += refresh_answer(j, 0.2 * options_.worn_answer, options_.iterations);
+  }
+  update_compliance();
 }
 
 /// A state that does not find back is given up for the last one that was near to equilibrium, or from which it set out.
@@ -306,7 +329,6 @@ LiveFrame LiveEquilibrium::advance(const Vec3* hand) {
   LiveFrame frame;
   worn_ = false;
   frame.refreshed = linear_.take_refreshed();
-  if (frame.refreshed) iterations_when_new_ = 0;
   std::optional<OneThreadHere> beside;  // the refresh, which has a core of its own
   if (linear_.is_refreshing()) beside.emplace();
   frame.reached = hand == nullptr || now_.relative <= options_.late;
@@ -316,12 +338,7 @@ LiveFrame LiveEquilibrium::advance(const Vec3* hand) {
   while (frame.corrections < most && now_.relative > tolerance) {
     if (!correct(frame)) break;
   }
-  if (held_ && frame.corrections > 0) {
-    turn_answers();
-    next_column_ = (next_column_ + 1) % 3;
-    frame.linear_iterations += refresh_answer(next_column_, options_.worn_answer, options_.iterations);
-    update_compliance();
-  }
+  if (held_) refresh_answers(frame);
   keep_good(frame);
   if (held_) correct_force();
   if (worn_) linear_.refresh(state_);

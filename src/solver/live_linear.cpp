@@ -15,7 +15,7 @@ namespace {
 
 /// Error of the map that stands in for C^-1 within an iteration: conjugate gradients take as many iterations with 0.3
 /// as with 0.01. What it leaves is left in the residual, which is taken with C itself.
-constexpr double kPressureReduction = 5e-1;
+constexpr double kPressureReduction = 3e-1;
 /// The same where E W is made.
 constexpr double kPatchReduction = 1e-4;
 
@@ -26,57 +26,45 @@ class TetTangents final : public linalg::ElementSource {
     const auto scratch = model.make_scratch();
     model.tet_tangents(state, *scratch, blocks_, coupling_);
     take_nodes(model, free);
-    out_.resize(nodes_.size());
-    for (std::size_t t = 0; t < nodes_.size(); ++t) out_[t] = is_nothing(t);
   }
-  /// Touched tets at `state`, the others as they were.
+  /// Touched tets at `state`, turned back by T, which is per node; the others as they were.
   void follow(const model::Model& model, const linalg::FreeDofs& free, const model::State& state,
-              const TornModel& torn) {
+              std::span<const std::int32_t> touched, const std::vector<Mat3>& T) {
     std::vector<double> blocks;
     std::vector<double> coupling;
     const auto scratch = model.make_scratch();
     model.tet_tangents(state, *scratch, blocks, coupling);
     take_nodes(model, free);
-    for (const std::int32_t tet : torn.touched) {
-      const auto at = static_cast<std::ptrdiff_t>(tet);
-      std::copy_n(blocks.begin() + 90 * at, 90, blocks_.begin() + 90 * at);
-      if (!coupling.empty()) std::copy_n(coupling.begin() + 12 * at, 12, coupling_.begin() + 12 * at);
-      out_[static_cast<std::size_t>(tet)] = is_nothing(static_cast<std::size_t>(tet));
-    }
-  }
-  /// Back by T per node, to where the others are: T^T K T, T^T b.
-  void turn_back(std::span<const std::int32_t> tets, const std::vector<Mat3>& turn) {
-    for (const std::int32_t tet : tets) {
-      const auto at = static_cast<std::size_t>(tet);
-      const auto of = [&](std::size_t a) -> const Mat3& { return turn[static_cast<std::size_t>(nodes_[at][a])]; };
-      double* block = blocks_.data() + 90 * at;
+    for (const std::int32_t tet : touched) {
+      const auto t = static_cast<std::size_t>(tet);
+      const auto turn = [&](std::size_t a) -> const Mat3& { return T[static_cast<std::size_t>(nodes_[t][a])]; };
+      std::size_t at = 90 * t;
       for (std::size_t a = 0; a < 4; ++a) {
-        for (std::size_t b = 0; b <= a; ++b, block += 9) {
-          Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> K(block);
-          K = (of(a).transpose() * K * of(b)).eval();
-        }
-        if (coupling_.empty()) continue;
-        Eigen::Map<Vec3> b(coupling_.data() + 12 * at + 3 * a);
-        b = (of(a).transpose() * b).eval();
+        for (std::size_t b = 0; b <= a; ++b, at += 9)
+          Block(blocks_.data() + at) = turn(a).transpose() * Block(blocks.data() + at) * turn(b);
+      }
+      for (std::size_t a = 0; a < 4 && !coupling.empty(); ++a) {
+        const std::size_t of = 12 * t + 3 * a;
+        Eigen::Map<Vec3>(coupling_.data() + of) = turn(a).transpose() * Eigen::Map<Vec3>(coupling.data() + of);
       }
     }
   }
-  /// Per tet, nonzero: the model leaves it out.
-  const std::vector<std::uint8_t>& left_out() const { return out_; }
   /// Per tet, m^3/Pa.
   void set_diagonal(const VectorX& d) { d_ = d; }
-  /// Adds this part of its mean diagonal to the diagonal of each tet.
+  /// Adds this part of its trace to the diagonal of each tet.
   void shift_by(double part) { shift_ = part; }
 
   std::int32_t node_count() const override { return static_cast<std::int32_t>(free_.size()); }
   std::int32_t element_count() const override { return static_cast<std::int32_t>(nodes_.size()); }
-  bool is_active(std::int32_t tet) const override { return out_[static_cast<std::size_t>(tet)] == 0; }
+  bool is_active(std::int32_t tet) const override {
+    return left_out_.empty() || left_out_[static_cast<std::size_t>(tet)] == 0;
+  }
   std::array<std::int32_t, 4> nodes(std::int32_t tet) const override { return nodes_[static_cast<std::size_t>(tet)]; }
   void stiffness(std::int32_t tet, linalg::ElementMatrix& out) const override {
     const double* block = blocks_.data() + 90 * static_cast<std::size_t>(tet);
     for (Eigen::Index a = 0; a < 4; ++a) {
       for (Eigen::Index b = 0; b <= a; ++b, block += 9) {
-        const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> K(block);
+        const Eigen::Map<const RowMajor> K(block);
         out.block<3, 3>(3 * a, 3 * b) = K;
         out.block<3, 3>(3 * b, 3 * a) = K.transpose();
       }
@@ -90,16 +78,15 @@ class TetTangents final : public linalg::ElementSource {
   void load(std::int32_t, linalg::ElementVector& out) const override { out.setZero(); }
   Vec3 node_load(std::int32_t) const override { return Vec3::Zero(); }
   unsigned free_components(std::int32_t node) const override { return free_[static_cast<std::size_t>(node)]; }
+
   std::size_t memory_bytes() const {
     return sizeof(double) * (blocks_.size() + coupling_.size()) + sizeof(nodes_[0]) * nodes_.size();
   }
 
  private:
-  /// A tet that the model leaves out.
-  std::uint8_t is_nothing(std::size_t tet) const {
-    const double* block = blocks_.data() + 90 * tet;
-    return std::all_of(block, block + 90, [](double value) { return value == 0.0; }) ? 1 : 0;
-  }
+  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  using Block = Eigen::Map<RowMajor>;
+
   void take_nodes(const model::Model& model, const linalg::FreeDofs& free) {
     const std::vector<std::int32_t>& connectivity = model.space().connectivity;
     nodes_.resize(connectivity.size() / 4);
@@ -107,17 +94,36 @@ class TetTangents final : public linalg::ElementSource {
       std::copy_n(connectivity.begin() + static_cast<std::ptrdiff_t>(4 * t), 4, nodes_[t].begin());
       std::sort(nodes_[t].begin(), nodes_[t].end());
     }
+    const std::span<const std::uint8_t> out = model.left_out();
+    left_out_.assign(out.begin(), out.end());
     free_.assign(model.space().node_count(), 0);
     for (const std::int32_t dof : free.dof) free_[static_cast<std::size_t>(dof / 3)] |= 1U << (dof % 3);
   }
 
   std::vector<double> blocks_, coupling_;
   std::vector<std::array<std::int32_t, 4>> nodes_;
-  std::vector<std::uint8_t> out_;  ///< per tet
-  std::vector<unsigned> free_;     ///< per node
+  std::vector<std::uint8_t> left_out_;  ///< per tet
+  std::vector<unsigned> free_;          ///< per node
   VectorX d_;
   double shift_ = 0.0;
 };
+
+/// Patches of C, and what else of it a preconditioner keeps: A and B set a weight alone.
+linalg::PressurePatches patches_of(const linalg::SaddleMatrix& K) {
+  linalg::PressurePatches out;
+  const linalg::ChebyshevInverse inverse(K.C, kPatchReduction);
+  out.set(K, [&](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
+    VectorX column;
+    VectorX solved;
+    linalg::ChebyshevInverse::Work work;
+    for (Eigen::Index j = 0; j < b.cols(); ++j) {
+      column = b.col(j);
+      inverse.apply(column, solved, work);
+      x.col(j) = solved;
+    }
+  });
+  return out;
+}
 
 linalg::ChebyshevInverse inverse_of_pressures(const model::Model& model) {
   const linalg::SaddleMatrix K = model.make_tangent();
@@ -135,85 +141,63 @@ void TornModel::add(const TornModel& next) {
 
 /// Never changes once made.
 struct LiveLinear::Preconditioner {
+  std::shared_ptr<const model::Model> model;  ///< whose C it knows
   TetTangents tets;
   std::shared_ptr<const linalg::FrontTree> tree;
   std::shared_ptr<const linalg::FrontSolver> solver;  ///< of the tree
   linalg::PressurePatches patches;
-  bool torn = false;  ///< the patches are of a body that has torn since
-  std::shared_ptr<const NodeRotations> rotations;
   std::vector<Mat3> rotation;  ///< per node, at its state
 
   void solve(const VectorX& r, VectorX& z, linalg::FrontSolver::Work& work) const {
     solver->solve(r, z, work);
     patches.apply(r, z);
   }
-  /// D, E W and G.
-  void set_patches(const linalg::SaddleMatrix& K) {
-    const linalg::ChebyshevInverse inverse(K.C, kPatchReduction);
-    patches.set(K, [&](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
-      VectorX column;
-      VectorX solved;
-      linalg::ChebyshevInverse::Work work;
-      for (Eigen::Index j = 0; j < b.cols(); ++j) {
-        column = b.col(j);
-        inverse.apply(column, solved, work);
-        x.col(j) = solved;
-      }
-    });
+};
+
+LiveLinear::LiveLinear(std::shared_ptr<const model::Model> model, linalg::FreeDofs free, const model::State& state)
+    : model_(std::move(model)),
+      free_(std::move(free)),
+      c_inverse_(inverse_of_pressures(*model_)),
+      rotations_(model_->space(), model_->left_out()) {
+  preconditioner_ = prepare(model_, free_, state, nullptr);
+}
+
+LiveLinear::~LiveLinear() = default;
+
+LiveLinear::Prepared LiveLinear::prepare(const std::shared_ptr<const model::Model>& model, const linalg::FreeDofs& free,
+                                         const model::State& state, const Preconditioner* before) {
+  auto out = std::make_shared<Preconditioner>(
+      Preconditioner{model, TetTangents(*model, free, state), nullptr, nullptr, {}, {}});
+  TetTangents& tets = out->tets;
+  linalg::SaddleMatrix K = model->make_tangent();
+  if (K.C.rows() > 0) {
+    model->tangent(state, *model->make_scratch(), K);
+    out->patches = before != nullptr && before->model == model ? before->patches : patches_of(K);
   }
-  void correct_patches(const linalg::SaddleMatrix& K, const linalg::FreeDofs& free) {
-    patches.correct(K, free, [&](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
+  NodeRotations(model->space(), model->left_out()).measure(state.u, out->rotation);
+  tets.set_diagonal(out->patches.diagonal());
+  // A body under compression may have no definite tangent: what is solved is one that is stiffer.
+  constexpr double kFirstShift = 0.03;
+  constexpr double kLargestShift = 1e4;
+  for (double shift = 0.0;; shift = std::max(kFirstShift, 3.0 * shift)) {
+    tets.shift_by(shift);
+    out->tree = before != nullptr ? before->tree->refactored(tets) : linalg::FrontTree::make(tets, {});
+    if (out->tree->outcome() == linalg::FrontOutcome::ok) break;
+    RHEXIS_CHECK(shift <= kLargestShift, "not positive definite with {} of its diagonal added", shift);
+  }
+  out->solver = std::make_shared<const linalg::FrontSolver>(*out->tree);
+  if (out->patches.count() > 0) {
+    out->patches.correct(K, free, [&](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
       VectorX column;
       VectorX solved;
       linalg::FrontSolver::Work work;
       for (Eigen::Index j = 0; j < b.cols(); ++j) {
         column = b.col(j);
-        solver->solve(column, solved, work);
+        out->solver->solve(column, solved, work);
         x.col(j) = solved;
       }
     });
   }
-};
-
-LiveLinear::LiveLinear(std::shared_ptr<const model::Model> model, linalg::FreeDofs free, const model::State& state)
-    : model_(std::move(model)), free_(std::move(free)), c_inverse_(inverse_of_pressures(*model_)) {
-  preconditioner_ = prepare(*model_, free_, state, nullptr);
-}
-
-LiveLinear::~LiveLinear() = default;
-
-LiveLinear::Prepared LiveLinear::prepare(const model::Model& model, const linalg::FreeDofs& free,
-                                         const model::State& state, const Preconditioner* before) {
-  auto out = std::make_shared<Preconditioner>(Preconditioner{.tets = TetTangents(model, free, state),
-                                                             .tree = {},
-                                                             .solver = {},
-                                                             .patches = {},
-                                                             .rotations = {},
-                                                             .rotation = {}});
-  out->rotations = before != nullptr ? before->rotations
-                                     : std::make_shared<const NodeRotations>(model.space(), out->tets.left_out());
-  out->rotations->measure(state.u, out->rotation);
-  linalg::SaddleMatrix K = model.make_tangent();
-  if (K.C.rows() > 0) {
-    model.tangent(state, *model.make_scratch(), K);
-    if (before != nullptr && !before->torn) {
-      out->patches = before->patches;
-    } else {
-      out->set_patches(K);
-    }
-    out->tets.set_diagonal(out->patches.diagonal());
-  }
-  // A body under compression may have no definite tangent: what is solved is one that is stiffer.
-  constexpr double kFirstShift = 0.03;
-  constexpr double kLargestShift = 1e4;
-  for (double shift = 0.0;; shift = std::max(kFirstShift, 3.0 * shift)) {
-    out->tets.shift_by(shift);
-    out->tree = before != nullptr ? before->tree->refactored(out->tets) : linalg::FrontTree::make(out->tets, {});
-    if (out->tree->outcome() == linalg::FrontOutcome::ok) break;
-    RHEXIS_CHECK(shift <= kLargestShift, "not positive definite with {} of its diagonal added", shift);
-  }
-  out->solver = std::make_shared<const linalg::FrontSolver>(*out->tree);
-  if (K.C.rows() > 0) out->correct_patches(K, free);
   return out;
 }
 
@@ -221,13 +205,11 @@ LiveLinear::Prepared LiveLinear::followed(const Preconditioner& before, const mo
                                           const TornModel& torn) const {
   auto out = std::make_shared<Preconditioner>(before);
   for (const std::int32_t parent : torn.copied)
-    out->rotation.push_back(before.rotation[static_cast<std::size_t>(parent)]);
-  out->tets.follow(*model_, free_, state, torn);
-  out->rotations = std::make_shared<const NodeRotations>(model_->space(), out->tets.left_out());
-  std::vector<Mat3> turn;
-  out->rotations->measure(state.u, turn);
-  for (std::size_t i = 0; i < turn.size(); ++i) turn[i] = (turn[i] * out->rotation[i].transpose()).eval();
-  out->tets.turn_back(torn.touched, turn);
+    out->rotation.push_back(out->rotation[static_cast<std::size_t>(parent)]);
+  std::vector<Mat3> T;
+  rotations_.measure(state.u, T);
+  for (std::size_t i = 0; i < T.size(); ++i) T[i] = (T[i] * out->rotation[i].transpose()).eval();
+  out->tets.follow(*model_, free_, state, torn.touched, T);
   linalg::ElementChange change;
   change.copied = torn.copied;
   change.touched = torn.touched;
@@ -235,7 +217,6 @@ LiveLinear::Prepared LiveLinear::followed(const Preconditioner& before, const mo
   if (out->tree->outcome() != linalg::FrontOutcome::ok) return nullptr;
   out->solver = std::make_shared<const linalg::FrontSolver>(*out->tree, before.solver.get());
   out->patches.follow(torn.copied, free_);
-  out->torn = true;
   return out;
 }
 
@@ -244,15 +225,16 @@ void LiveLinear::follow(std::shared_ptr<const model::Model> model, linalg::FreeD
   model_ = std::move(model);
   free_ = std::move(free);
   c_inverse_ = inverse_of_pressures(*model_);
-  K_ = nullptr;
-  point_.reset();
+  rotations_ = NodeRotations(model_->space(), model_->left_out());
   rotation_.clear();
+  point_.reset();
+  K_ = nullptr;
   if (task_.under_way()) {
     torn_since_.add(torn);
     state_then_ = state;
   }
   preconditioner_ = followed(*preconditioner_, state, torn);
-  if (!preconditioner_) preconditioner_ = prepare(*model_, free_, state, nullptr);
+  if (!preconditioner_) preconditioner_ = prepare(model_, free_, state, nullptr);
 }
 
 void LiveLinear::set_tangent(const linalg::SaddleMatrix& K, const model::State& state) {
@@ -260,7 +242,7 @@ void LiveLinear::set_tangent(const linalg::SaddleMatrix& K, const model::State& 
   const Eigen::Index dofs = K.displacement_unknowns();
   work_.resize(dofs);
   for (VectorX* v : {&p_, &q_}) v->resize(K.C.rows());
-  preconditioner_->rotations->measure(state.u, rotation_);
+  rotations_.measure(state.u, rotation_);
   turn();
 }
 
@@ -376,9 +358,11 @@ void LiveLinear::refresh(const model::State& state) {
   if (task_.under_way()) return;
   worked_ = 0;
   torn_since_ = {};
-  task_.start([this, model = model_, free = free_, state, before = preconditioner_] {
+  ready_ = false;
+  task_.start([this, state, model = model_, free = free_, before = preconditioner_] {
     const OneThreadHere beside;
-    refreshed_ = prepare(*model, free, state, before.get());
+    refreshed_ = prepare(model, free, state, before.get());
+    ready_ = true;
   });
 }
 

@@ -10,6 +10,7 @@
 /// share.
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -57,7 +58,7 @@ struct TornModel {
 
 /// Iterations of the caller after which a preconditioner that was begun beside him is taken up: by then it is ready,
 /// mostly.
-inline constexpr int kRefreshWork = 100;
+inline constexpr int kRefreshWork = 60;
 
 struct LiveSolve {
   int iterations = 0;
@@ -71,7 +72,7 @@ class LiveLinear {
   ~LiveLinear();
 
   /// The body has torn: another model of it, of the same tets and more nodes, at `state`. The preconditioner follows
-  /// what was touched, and so will one that is under way.
+  /// what was touched, and so will one that is under way. Tangent and constraint have to be set again.
   void follow(std::shared_ptr<const model::Model> model, linalg::FreeDofs free, const model::State& state,
               const TornModel& torn);
 
@@ -90,19 +91,20 @@ class LiveLinear {
                   VectorX& xp);
   /// Starts to prepare another preconditioner at `state` beside the caller, unless one is under way.
   void refresh(const model::State& state);
-  /// Takes it up when it is due, that is after kRefreshWork of the caller's iterations, and waits for it then: a count
-  /// and no clock, so that the same input gives the same bits. True: it was.
+  /// Takes it up when it is due, that is after kRefreshWork iterations, and waits for it then: a count and no clock, so
+  /// that the same input gives the same bits. True: it was.
   bool take_refreshed();
-  [[nodiscard]] bool is_refreshing() const { return task_.under_way(); }
+  [[nodiscard]] bool is_refreshing() const { return task_.under_way() && !ready_; }
   [[nodiscard]] std::size_t memory_bytes() const;
 
  private:
   struct Preconditioner;
   using Prepared = std::shared_ptr<const Preconditioner>;
-  /// `before`: of the same model, or null; its order of elimination is taken, and what depends on C alone.
-  [[nodiscard]] static Prepared prepare(const model::Model& model, const linalg::FreeDofs& free,
+  /// `before`: one of the same tets, whose order is taken and, where it is of the same model, what depends on C alone;
+  /// null: none.
+  [[nodiscard]] static Prepared prepare(const std::shared_ptr<const model::Model>& model, const linalg::FreeDofs& free,
                                         const model::State& state, const Preconditioner* before);
-  /// After the body has torn, at the present state. Null: it would not be definite.
+  /// After the body has torn, at a state of the present model. Null: it would not be definite.
   [[nodiscard]] Prepared followed(const Preconditioner& before, const model::State& state, const TornModel& torn) const;
   void apply(const VectorX& x, VectorX& y);
   void precondition(const VectorX& r, VectorX& z);
@@ -116,6 +118,7 @@ class LiveLinear {
   const linalg::SaddleMatrix* K_ = nullptr;
   Prepared preconditioner_;
 
+  NodeRotations rotations_;
   std::vector<Mat3> rotation_;  ///< of each node at the tangent
   std::vector<Mat3> turn_;      ///< T, since the preconditioner's state
   VectorX turned_, solved_;
@@ -132,9 +135,10 @@ class LiveLinear {
 
   int worked_ = 0;           ///< iterations since the refresh began
   TornModel torn_since_;     ///< the same for the body
-  model::State state_then_;  ///< present state, where it has torn since
+  model::State state_then_;  ///< where it has torn since: its state after the last time
   Prepared refreshed_;
-  BackgroundTask task_;  ///< writes the one above: it has to end before that does, so it stands last
+  std::atomic<bool> ready_ = false;
+  BackgroundTask task_;  ///< writes the two above: it has to end before they do, so it stands last
 };
 
 }  // namespace rhexis::solver

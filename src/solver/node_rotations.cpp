@@ -30,7 +30,9 @@ Mat3 rotation_of(const Mat3& F) {
 NodeRotations::NodeRotations(const model::DisplacementSpace& space, std::span<const std::uint8_t> left_out)
     : nodes_(space.node_count()) {
   RHEXIS_CHECK(space.order == 1, "order {}", space.order);
-  for (std::size_t t = 0; t < space.connectivity.size() / 4; ++t) {
+  const std::size_t count = space.connectivity.size() / 4;
+  tets_.reserve(count);
+  for (std::size_t t = 0; t < count; ++t) {
     if (!left_out.empty() && left_out[t] != 0) continue;
     Tet& tet = tets_.emplace_back();
     for (std::size_t a = 0; a < 4; ++a) tet.node[a] = space.connectivity[4 * t + a];

@@ -20,7 +20,7 @@ namespace rhexis::solver {
 
 class NodeRotations {
  public:
-  /// Of a P1 space, without the tets where `left_out` is not zero; empty: of all.
+  /// Of a P1 space. `left_out` as of Model::left_out.
   explicit NodeRotations(const model::DisplacementSpace& space, std::span<const std::uint8_t> left_out = {});
 
   /// Per node the rotation of the mean deformation gradient of its tets, near enough for a preconditioner: T is regular

@@ -22,7 +22,7 @@ using test::FullSolve;
 /// RHEXIS_LIVE_PULLS asks for more; the first of them are run always.
 int pull_count() {
   const char* asked = std::getenv("RHEXIS_LIVE_PULLS");
-  return asked != nullptr ? std::atoi(asked) : 24;
+  return asked != nullptr ? std::atoi(asked) : 16;
 }
 
 struct LiveTally {
