@@ -306,12 +306,14 @@ Section fracture() {
                .kind = Kind::number,
                .unit = "Pa",
                .range = kModulus,
-               .doc = "Stress at which the body tears. It depends on the mesh: stress at a tip grows as h^(-1/2)."},
+               .doc = "Stress at which the body tears, Cauchy's with a model of large strain. It depends on the mesh: "
+                      "stress at "
+                      "a tip grows as h^(-1/2)."},
               {.name = "toughness",
                .kind = Kind::number,
                .unit = "N/m",
                .range = within(1e-9, 1e12),
-               .doc = "Energy release per area at which the body tears, in place of `strength`."},
+               .doc = "Energy release per area at which the body tears, in place of `strength`. Of model `linear`."},
               {.name = "advance_threshold",
                .kind = Kind::number,
                .unit = "Pa",
@@ -388,7 +390,7 @@ Section interaction() {
            .fallback = "\"consistent\"",
            .names = {"consistent", "blend"},
            .doc = "Force of a point inside a surface triangle: one constraint on it, or the reactions of its vertices "
-                  "blended with the area coordinates."},
+                  "blended with the area coordinates, of model `linear`."},
       }};
 }
 

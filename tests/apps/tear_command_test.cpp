@@ -113,7 +113,7 @@ TEST(TearCommand, BadInputIsOneLineAndWritesNothing) {
     std::string set, says;
   };
   for (const Bad& bad :
-       {Bad{"--set model.kind=corotated",
+       {Bad{"--set model.kind=taylor-hood",
             "--set model.kind=taylor-hood: a body with model 'taylor-hood' cannot be torn"},
         Bad{"--set pull.0.at=[0.24,0.1,0.005]", "a support holds the point that the hand takes hold of"},
         Bad{"--set crack.0.from=[0.3,0,0] --set crack.0.to=[0.3,0.06,0]", "crack"},
