@@ -32,8 +32,8 @@ constexpr double kProgress = 0.9;
 /// Corrections of a frame that is late, and how much further each is solved.
 constexpr int kLateCorrections = 2;
 constexpr int kLateIterations = 3;
-/// Iterations from which on a preconditioner is made anew at the present state.
-constexpr int kWornIterations = 4;
+/// Iterations more than when it was new, from which on a preconditioner is made anew at the present state.
+constexpr int kWornIterations = 2;
 
 }  // namespace
 
@@ -274,7 +274,8 @@ bool LiveEquilibrium::correct(LiveFrame& frame) {
   const LiveSolve solve =
       linear_.solve(LiveLinear::Point::fixed, rhs_u_, rhs_lambda_, options_.forcing, most, du_, dlambda_);
   frame.linear_iterations += solve.iterations;
-  worn_ = worn_ || solve.iterations >= kWornIterations || solve.truncated;
+  if (iterations_when_new_ == 0) iterations_when_new_ = std::max(1, solve.iterations);
+  worn_ = worn_ || solve.iterations >= iterations_when_new_ + kWornIterations || solve.truncated;
   for (int halving = 0; halving <= kHalvings; ++halving) {
     const double part = std::ldexp(1.0, -halving);
     trial_.u = state_.u + part * du_;
@@ -329,6 +330,7 @@ LiveFrame LiveEquilibrium::advance(const Vec3* hand) {
   LiveFrame frame;
   worn_ = false;
   frame.refreshed = linear_.take_refreshed();
+  if (frame.refreshed) iterations_when_new_ = 0;
   std::optional<OneThreadHere> beside;  // the refresh, which has a core of its own
   if (linear_.is_refreshing()) beside.emplace();
   frame.reached = hand == nullptr || now_.relative <= options_.late;

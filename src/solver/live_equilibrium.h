@@ -23,13 +23,13 @@
 namespace rhexis::solver {
 
 struct LiveOptions {
-  int corrections = 1;        ///< Newton corrections a frame at most
-  double tolerance = 1e-4;    ///< relative residual below which a frame needs no (further) correction
-  double at_rest = 1e-7;      ///< the same where nothing is held and there is no haste, if it is the smaller
-  double forcing = 0.3;       ///< relative residual of the linear solve of a correction
-  int iterations = 6;         ///< of conjugate gradients in it, at most
-  double late = 0.1;          ///< relative residual above which the hand is not followed further: late, not wrong
-  double worn_answer = 0.05;  ///< relative residual above which a column of Z is solved for again, one a frame
+  int corrections = 1;       ///< Newton corrections a frame at most
+  double tolerance = 1e-4;   ///< relative residual below which a frame needs no (further) correction
+  double at_rest = 1e-7;     ///< the same where nothing is held and there is no haste, if it is the smaller
+  double forcing = 0.3;      ///< relative residual of the linear solve of a correction
+  int iterations = 6;        ///< of conjugate gradients in it, at most
+  double late = 0.1;         ///< relative residual above which the hand is not followed further: late, not wrong
+  double worn_answer = 0.2;  ///< relative residual above which a column of Z is solved for again, one a frame
 };
 
 struct LiveFrame {
@@ -126,13 +126,14 @@ class LiveEquilibrium {
   int next_column_ = 0;
 
   model::State trial_;
-  model::State good_;          ///< the last one near to equilibrium
-  double least_ = 0.0;         ///< N, residual of the frames since it was late, the least
-  int idle_frames_ = 0;        ///< late frames in a row that have not lessened it
-  bool cautious_ = false;      ///< since it gave up: no step that lets the residual grow
-  bool worn_ = false;          ///< the frame has found the preconditioner wanting
-  double size_of_body_ = 0.0;  ///< m
-  double small_force_ = 0.0;   ///< N
+  model::State good_;            ///< the last one near to equilibrium
+  double least_ = 0.0;           ///< N, residual of the frames since it was late, the least
+  int idle_frames_ = 0;          ///< late frames in a row that have not lessened it
+  bool cautious_ = false;        ///< since it gave up: no step that lets the residual grow
+  bool worn_ = false;            ///< the frame has found the preconditioner wanting
+  int iterations_when_new_ = 0;  ///< of the first correction with it; 0: there was none
+  double size_of_body_ = 0.0;    ///< m
+  double small_force_ = 0.0;     ///< N
   VectorX du_, dlambda_, rhs_u_, rhs_lambda_;
 };
 
