@@ -10,6 +10,7 @@
 #include "studies/perception_answers.h"
 #include "studies/perception_log.h"
 #include "studies/perception_plate.h"
+#include "studies/study_plate.h"
 #include "tests/support/run_command.h"
 
 namespace rhexis::studies {
@@ -111,6 +112,11 @@ TEST(PerceptionPlate, NamesWhatItCannotTake) {
   settings.scene = std::filesystem::path(RHEXIS_SOURCE_DIR) / "scenes/plate-tear.toml";
   EXPECT_THAT(PerceptionPlate::open(settings).error().message(),
               HasSubstr("plate-tear.toml: the body of an experiment"));
+  settings.scene = test::fresh_folder("soft") / "soft.toml";
+  std::string soft = plate_scene("Soft", 300);
+  std::ofstream(settings.scene) << soft.replace(soft.find("\"linear\""), 8, "\"corotated\"");
+  EXPECT_THAT(PerceptionPlate::open(settings).error().message(),
+              HasSubstr("soft.toml: a plate of model 'corotated' has another law at every pull (kind = \"linear\")"));
   settings = *parse_perception("[[point]]\nat = [0.24, 0.12, 0.0]\n", "e.toml");
   EXPECT_THAT(PerceptionPlate::open(settings).error().message(), StartsWith("e.toml:2: "));
 }
