@@ -54,6 +54,8 @@ Expected<nlohmann::ordered_json> run_with_person(const studies::PerceptionSettin
   Expected<std::shared_ptr<studies::PerceptionTask>> task =
       studies::PerceptionTask::make(settings, folder.path() / studies::TrialLog::kName);
   if (!task) return fail(std::move(task.error()));
+  if ((*task)->standing().is_over)  // killed before its report was written, or asked for it again
+    return studies::write_answers(settings, (*task)->answered(), folder);
   Relay relay;
   Expected<std::unique_ptr<session::LiveSession>> live = session::LiveSession::open(settings_of(person, *task), relay);
   if (!live) return fail(std::move(live.error()));

@@ -23,7 +23,8 @@ struct PersonOptions {
 };
 
 /// Until the last trial is answered, or Ctrl-C; answers go into `folder`, where the same experiment goes on the next
-/// time. Errors: as of PerceptionTask, LiveSession and the server; not an answer.
+/// time. One that is at its end has its tables written again, without a page. Errors: as of PerceptionTask, LiveSession
+/// and the server; not an answer.
 Expected<nlohmann::ordered_json> run_with_person(const studies::PerceptionSettings& settings,
                                                  const PersonOptions& person, const studies::StudyFolder& folder,
                                                  const studies::Progress& progress);

@@ -105,9 +105,12 @@ StudyFunction angle_perception_options(CLI::App& command) {
   command
       .add_option("--experiment", options->experiment, "points, directions and rule; those of the thesis unless given")
       ->type_name("FILE");
-  command.add_option("--seed", options->seed, "of the order of trials, in place of the experiment's")->type_name("N");
-  command.add_option("--answers", *answers, "of a script, A or B a line, in place of simulated observers")
-      ->type_name("FILE");
+  command.add_option("--seed", options->seed, "of the order of trials, in place of the experiment's")
+      ->type_name("N")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1'000'000'000'000'000}));
+  CLI::Option* scripted =
+      command.add_option("--answers", *answers, "of a script, A or B a line, in place of simulated observers")
+          ->type_name("FILE");
   command.add_option("--observers", options->observers, "that are simulated, of each threshold and rule")
       ->type_name("COUNT");
   command.add_option("--threshold", options->thresholds, "of simulated observers; 8, 15 and 30 unless given")
@@ -116,7 +119,8 @@ StudyFunction angle_perception_options(CLI::App& command) {
   auto with = std::make_shared<std::string>("simulated");
   command.add_option("--with", *with, "simulated observers, or a person at the page; simulated unless given")
       ->type_name("WHOM")
-      ->check(CLI::IsMember({"simulated", "person"}));
+      ->check(CLI::IsMember({"simulated", "person"}))
+      ->excludes(scripted);
   auto person = std::make_shared<PersonOptions>();
   command.add_option("--device", person->device, "of the person: a name from `rhexis devices`; pointer unless given")
       ->type_name("NAME");

@@ -280,7 +280,7 @@ void ChebyshevInverse::apply(const VectorX& b, VectorX& x, Work& work) const {
 }
 
 std::size_t ChebyshevInverse::memory_bytes() const {
-  return sizeof(float) * (value_.capacity() + 3 * static_cast<std::size_t>(rows_)) +
+  return sizeof(float) * (value_.capacity() + 3 * at(rows_) + at(coarse_.size())) + sizeof(Far) * far_.capacity() +
          sizeof(std::int32_t) * (start_.capacity() + col_.capacity() + row_of_.capacity());
 }
 

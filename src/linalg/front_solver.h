@@ -12,7 +12,6 @@
 
 #include <Eigen/Core>
 
-#include "linalg/block_pool.h"
 #include "linalg/front_tree.h"
 
 namespace rhexis::linalg {

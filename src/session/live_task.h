@@ -20,7 +20,7 @@ class LiveTask {
   /// The body that is seen. Called once, before all else.
   virtual Expected<std::unique_ptr<OpenBody>> open() = 0;
   /// A Feel or an Answer. The hand has let go then, and what follows may be another. Errors: it makes no sense now, or
-  /// could not be kept; all stays as it was.
+  /// could not be kept, and all stays as it was; or it was kept, and there is nothing to go on with.
   virtual Expected<void> carry_out(const wire::PayloadUnion& command) = 0;
   /// The hand has taken hold, of what felt() is the law of.
   virtual void has_hold() = 0;

@@ -190,8 +190,10 @@ Expected<ordered_json> run_angle_perception(const AnglePerceptionOptions& option
   folder.note(fmt::format(
       "The verdict of the thesis is where guessing is ruled out: from {} degrees on. That says nothing of how often a "
       "hand "
-      "is right there: the function fitted to the same counts has three of four answers right at {:.0f} degrees only.",
-      *told_from(thesis_classes()), fit->function.threshold));
+      "is right there: the function fitted to the same counts has {:.0f}% of the answers right at {:.0f} degrees, its "
+      "threshold.",
+      *told_from(thesis_classes()), 100.0 * fit->function.probability(fit->function.threshold),
+      fit->function.threshold));
   Expected<void> ok = folder.write_table(
       "angle-perception", rows,
       "Table 5.4 of the thesis: from and to in degrees; critical: the least number of right answers that guessing "

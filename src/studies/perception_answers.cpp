@@ -8,6 +8,7 @@
 #include "scene/scene.h"
 #include "studies/angle_perception_figures.h"
 #include "studies/perception_log.h"
+#include "studies/perception_plate.h"
 #include "studies/perception_tables.h"
 
 namespace rhexis::studies {
@@ -33,6 +34,7 @@ Expected<ScriptedAnswers> read_script(const std::filesystem::path& path) {
       return fail(scene::in_quotes(word) + " is no answer", "A or B", path.string(), number);
     out.emplace_back(number, word == "A" || word == "a" ? Side::a : Side::b);
   }
+  if (out.empty()) return fail("there is no answer in it", "A or B, a line each", path.string());
   return out;
 }
 
@@ -70,6 +72,8 @@ Expected<ordered_json> run_scripted_answers(const PerceptionSettings& settings, 
                                             const StudyFolder& folder, const Progress& progress) {
   const Expected<ScriptedAnswers> script = read_script(answers);
   if (!script) return fail(script.error());
+  // A script touches no plate; an experiment that no plate can be made for is none all the same.
+  if (const Expected<PerceptionPlate> plate = PerceptionPlate::open(settings); !plate) return fail(plate.error());
   PerceptionExperiment experiment(settings, settings.seed);
   Expected<TrialLog> log = TrialLog::open(folder.path() / TrialLog::kName, settings, settings.seed, experiment);
   if (!log) return fail(std::move(log.error()));
@@ -87,9 +91,10 @@ Expected<ordered_json> run_scripted_answers(const PerceptionSettings& settings, 
     if (experiment.current() == nullptr)
       return wrong(fmt::format("the experiment has {} trials", experiment.answered().size()), "no more answers");
     experiment.answer(side);
-    if (Expected<void> kept = log->append(experiment.answered().back(), 0.0); !kept)
-      return fail(std::move(kept.error()));
   }
+  // Kept when all lines are good: a script with a mistake leaves no answers behind.
+  for (std::size_t k = before; k < experiment.answered().size(); ++k)
+    if (Expected<void> kept = log->append(experiment.answered()[k], 0.0); !kept) return fail(std::move(kept.error()));
   progress(1.0, fmt::format("{} answers", experiment.answered().size()));
   if (experiment.current() != nullptr)
     folder.note(fmt::format("The experiment is not at its end: {} of {} runs are done.", experiment.runs_done(),

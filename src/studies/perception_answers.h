@@ -19,8 +19,9 @@ Expected<nlohmann::ordered_json> write_answers(const PerceptionSettings& setting
                                                const std::vector<AnsweredTrial>& answered, const StudyFolder& folder);
 
 /// A script answers: line n of `answers`, A or B, is the answer to trial n; what is blank or begins with # is none.
-/// Goes on where `folder` has the answers to the first trials already. Errors: as of TrialLog; another line, more
-/// answers than trials, one that differs from what was answered, each with its line.
+/// Goes on where `folder` has the answers to the first trials already. Errors, with which no answer is kept: as of
+/// PerceptionPlate and TrialLog; no answer; another line, more answers than trials, one that differs from what was
+/// answered, each with its line.
 Expected<nlohmann::ordered_json> run_scripted_answers(const PerceptionSettings& settings,
                                                       const std::filesystem::path& answers, const StudyFolder& folder,
                                                       const Progress& progress);

@@ -41,7 +41,7 @@ bool take_up(const std::string& line, PerceptionExperiment& experiment) {
   return false;
 }
 
-/// Gives the bytes of the whole lines; 0: there is none yet.
+/// Gives the bytes of the whole lines; 0: there is none yet, or only the first of another experiment.
 Expected<std::uintmax_t> read_lines(const fs::path& path, const ordered_json& head, PerceptionExperiment& experiment) {
   std::ifstream file(path, std::ios::binary);
   const std::string text(std::istreambuf_iterator<char>(file), {});
@@ -49,8 +49,14 @@ Expected<std::uintmax_t> read_lines(const fs::path& path, const ordered_json& he
   int number = 1;
   for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', begin), ++number) {
     const std::string line = text.substr(begin, end - begin);
-    if (number == 1 && ordered_json::parse(line, nullptr, false) != head)
-      return fail("these are the answers to another experiment, or by another seed", kElsewhere, path.string(), 1);
+    if (number == 1) {
+      const ordered_json said = ordered_json::parse(line, nullptr, false);
+      const bool is_same = said == head;  // of what is no JSON != would be false too
+      const bool is_log = said.is_object() && said.contains("experiment") && said["experiment"] == head["experiment"];
+      if (!is_same && is_log && text.find('\n', end + 1) == std::string::npos) return 0;  // no answer is lost
+      if (!is_same)
+        return fail("these are the answers to another experiment, or by another seed", kElsewhere, path.string(), 1);
+    }
     if (number > 1 && !take_up(line, experiment))
       return fail("this is not the trial that comes next", kElsewhere, path.string(), number);
     begin = end + 1;
@@ -78,6 +84,7 @@ Expected<TrialLog> TrialLog::open(const fs::path& path, const PerceptionSettings
   std::error_code code;
   std::uintmax_t whole = 0;
   if (fs::exists(path, code)) {
+    if (!fs::is_regular_file(path, code)) return fail("not a file", kElsewhere, path.string());
     const Expected<std::uintmax_t> read = read_lines(path, head, experiment);
     if (!read) return fail(read.error());
     whole = *read;
@@ -86,7 +93,8 @@ Expected<TrialLog> TrialLog::open(const fs::path& path, const PerceptionSettings
   }
   std::FILE* file = std::fopen(path.c_str(), "ab");
   if (file == nullptr) return cannot_write(path);
-  TrialLog log(path, file);
+  std::setvbuf(file, nullptr, _IONBF, 0);  // what could not be written is not to come with the next line
+  TrialLog log(path, file, whole);
   if (whole == 0)
     if (Expected<void> written = log.write_line(head.dump()); !written) return fail(std::move(written.error()));
   return log;
@@ -102,7 +110,14 @@ Expected<void> TrialLog::write_line(const std::string& line) {
   const std::string whole = line + '\n';
   const bool done = std::fwrite(whole.data(), 1, whole.size(), file_.get()) == whole.size() &&
                     std::fflush(file_.get()) == 0 && (::fdatasync(::fileno(file_.get())) == 0 || errno == EINVAL);
-  return done ? Expected<void>{} : cannot_write(path_);
+  if (done) {
+    bytes_ += whole.size();
+    return {};
+  }
+  Expected<void> error = cannot_write(path_);
+  std::clearerr(file_.get());
+  if (::ftruncate(::fileno(file_.get()), static_cast<off_t>(bytes_)) != 0) return cannot_write(path_);
+  return error;
 }
 
 }  // namespace rhexis::studies

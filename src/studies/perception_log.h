@@ -22,11 +22,13 @@ class TrialLog {
 
   /// Gives `experiment` the answers that the file holds, and goes on behind them; a last line that was not finished is
   /// taken away. `experiment` is new, of these settings and this seed. Errors: a file of another experiment or seed, a
-  /// line that is no trial of this one, with its number; a file that cannot be written.
+  /// line that is no trial of this one, with its number; a file that cannot be written. One without an answer gives
+  /// way.
   static Expected<TrialLog> open(const std::filesystem::path& path, const PerceptionSettings& settings,
                                  std::uint64_t seed, PerceptionExperiment& experiment);
 
-  /// On the disk when it comes back. `seconds`: that the trial took; 0 where nobody measured.
+  /// On the disk when it comes back; after an error nothing of it is there. `seconds`: that the trial took; 0 where
+  /// nobody measured.
   Expected<void> append(const AnsweredTrial& answered, double seconds);
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
@@ -34,11 +36,13 @@ class TrialLog {
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
-  TrialLog(std::filesystem::path path, std::FILE* file) : path_(std::move(path)), file_(file) {}
+  TrialLog(std::filesystem::path path, std::FILE* file, std::uintmax_t bytes)
+      : path_(std::move(path)), file_(file), bytes_(bytes) {}
   Expected<void> write_line(const std::string& line);
 
   std::filesystem::path path_;
   std::unique_ptr<std::FILE, Close> file_;
+  std::uintmax_t bytes_;  ///< of the whole lines
 };
 
 /// Of a line: trial, run, point, direction (from 0), difference (degrees), same, answer, right.

@@ -29,6 +29,9 @@ Expected<void> check(const session::OpenBody& body) {
     return fail("the body of an experiment does not tear by itself", "leave [fracture] out", file);
   if (body.problem.interaction.response != "exact")
     return fail("a record knows some crack angles only", "response = \"exact\"", file);
+  if (!body.tear().is_linear())  // a trial is felt by one law, as far as one may pull
+    return fail(fmt::format("a plate of model '{}' has another law at every pull", body.tear().model_name()),
+                "kind = \"linear\"", file);
   const std::vector<fracture::Crack>& cracks = body.tear().cracks();
   if (cracks.empty() || cracks.back().finished) return fail("no crack can run on", "add a [[crack]]", file);
   for (const fracture::FrontPoint& point : cracks.back().front)

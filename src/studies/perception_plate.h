@@ -14,8 +14,8 @@ namespace rhexis::studies {
 
 class PerceptionPlate {
  public:
-  /// Errors: of the scene; a scene that tears by itself, has no crack that goes through along z, or whose response is
-  /// not the exact one; an advance of the sample, or a point, that cannot be.
+  /// Errors: of the scene; a scene that tears by itself, is of large strain, has no crack that goes through along z, or
+  /// whose response is not the exact one; an advance of the sample, or a point, that cannot be.
   static Expected<PerceptionPlate> open(const PerceptionSettings& settings);
 
   /// With a crack that has run on by the experiment's length at `angle` (degrees, from +x).

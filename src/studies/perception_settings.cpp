@@ -145,8 +145,7 @@ Expected<PerceptionSettings> parse_perception(std::string_view text, const std::
   if (!values) return fail(values.error());
   Expected<PerceptionSettings> settings = settings_of(*values, file);
   if (!settings || (!settings->points.empty() && !settings->directions.empty())) return settings;
-  const bool takes_default = settings->scene.empty();
-  if (!takes_default)
+  if (!settings->scene.empty())
     return fail(
         settings->points.empty() ? "nothing says where the plate is held" : "nothing says which way it is pulled",
         settings->points.empty() ? "add a [[point]]" : "add a [[direction]]", file);
@@ -162,7 +161,8 @@ Expected<PerceptionSettings> parse_perception(std::string_view text, const std::
 Expected<PerceptionSettings> read_perception(const fs::path& path) {
   if (path.empty()) return parse_perception({}, "the thesis's experiment");
   const Expected<std::string> text = scene::read_scene_text(path);
-  if (!text) return fail(text.error());
+  if (!text)
+    return fail(text.error().what, "an experiment, as in scenes/experiments/angle-perception.toml", path.string());
   return parse_perception(*text, path.string());
 }
 
@@ -173,6 +173,8 @@ std::uint64_t fingerprint_of(const PerceptionSettings& settings) {
                                 settings.rule.steps, settings.rule.trials, settings.rule.reversals);
   for (const std::vector<PlacedVector>* vectors : {&settings.points, &settings.directions})
     for (const PlacedVector& v : *vectors) all += fmt::format("|{} {} {}", v.value.x(), v.value.y(), v.value.z());
+  if (!settings.scene.empty())
+    if (const Expected<std::string> text = scene::read_scene_text(settings.scene)) all += *text;
   return Hash().add(std::span<const char>(all)).value();
 }
 

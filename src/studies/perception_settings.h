@@ -50,7 +50,8 @@ struct PerceptionSettings {
 /// An empty path: the experiment of the thesis.
 [[nodiscard]] Expected<PerceptionSettings> read_perception(const std::filesystem::path& path);
 
-/// Of all that decides which trials there are: two experiments of one fingerprint and one seed are the same.
+/// Of all that decides which trials there are, and of the text of the plate's scene: two experiments of one fingerprint
+/// and one seed are the same.
 [[nodiscard]] std::uint64_t fingerprint_of(const PerceptionSettings& settings);
 
 }  // namespace rhexis::studies

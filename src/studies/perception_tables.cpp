@@ -27,10 +27,11 @@ ordered_json fit_row(std::string_view source, std::span<const AnswerCount> answe
 }
 
 Expected<void> write_fit(const StudyFolder& folder, const ordered_json& rows) {
-  return folder.write_table("angle-perception-fit", rows,
-                            "The difference at which three of four answers are right (degrees), with its 95% interval "
-                            "by profile likelihood; an "
-                            "empty end is not bounded by the answers.");
+  return folder.write_table(
+      "angle-perception-fit", rows,
+      "The difference at which three of four answers are right but for lapses (degrees), with its 95% interval "
+      "by profile likelihood; an "
+      "empty end is not bounded by the answers.");
 }
 
 }  // namespace rhexis::studies

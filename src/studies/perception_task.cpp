@@ -22,10 +22,9 @@ Expected<std::shared_ptr<PerceptionTask>> PerceptionTask::make(const PerceptionS
   auto experiment = std::make_unique<PerceptionExperiment>(settings, settings.seed);
   Expected<TrialLog> opened = TrialLog::open(log, settings, settings.seed, *experiment);
   if (!opened) return fail(std::move(opened.error()));
-  if (experiment->current() == nullptr)
-    return fail("the experiment is at its end already", "--out names another folder for another one", log.string());
   std::shared_ptr<PerceptionTask> task(
       new PerceptionTask(settings, std::move(*plate), std::move(experiment), std::move(*opened), std::move(*sample)));
+  if (task->standing().is_over) return task;
   if (Expected<void> met = task->meet_trial(); !met) return fail(std::move(met.error()));
   return task;
 }
@@ -43,6 +42,7 @@ PerceptionTask::PerceptionTask(PerceptionSettings settings, PerceptionPlate plat
 
 Expected<void> PerceptionTask::carry_out(const wire::PayloadUnion& command) {
   if (experiment_->current() == nullptr) return fail("the experiment is over");
+  if (unmet_) return fail(*unmet_);
   if (const wire::FeelT* feel = command.AsFeel()) {
     if (feel->presented > Presented::MAX) return fail("there is no such plate", "the sample, A or B");
     presented_ = feel->presented;
@@ -69,9 +69,13 @@ Expected<void> PerceptionTask::meet_trial() {
   const Trial& trial = *experiment_->current();
   presented_ = Presented::sample;
   felt_ = {};
+  unmet_.reset();
   watch_.restart();
   Expected<std::vector<response::ContactLaw>> laws = plate_.laws(settings_.sample - trial.difference);
-  if (!laws) return fail(std::move(laws.error()));
+  if (!laws) {
+    unmet_ = laws.error();
+    return fail(std::move(laws.error()));
+  }
   odd_ = (*laws)[trial.point];
   return {};
 }

@@ -19,7 +19,7 @@ namespace rhexis::studies {
 
 class PerceptionTask final : public session::LiveTask {
  public:
-  /// Goes on where `log` stands. Errors: as of PerceptionPlate and TrialLog; an experiment that is at its end already.
+  /// Goes on where `log` stands, which may be at the end. Errors: as of PerceptionPlate and TrialLog.
   static Expected<std::shared_ptr<PerceptionTask>> make(const PerceptionSettings& settings,
                                                         const std::filesystem::path& log);
 
@@ -42,7 +42,8 @@ class PerceptionTask final : public session::LiveTask {
   PerceptionTask(PerceptionSettings settings, PerceptionPlate plate, std::unique_ptr<PerceptionExperiment> experiment,
                  TrialLog log, std::vector<response::ContactLaw> sample);
   Expected<void> answer(Side side);
-  /// Tears the odd plate of the current trial.
+  /// Tears the odd plate of the current trial. After an error only the sample is felt, and nothing can be answered: the
+  /// odd plate of the trial before is not to pass for it.
   Expected<void> meet_trial();
   void stand();
 
@@ -52,6 +53,7 @@ class PerceptionTask final : public session::LiveTask {
   TrialLog log_;
   std::vector<response::ContactLaw> sample_;  ///< per point
   response::ContactLaw odd_;
+  std::optional<Error> unmet_;  ///< why the current trial has no odd plate
   wire::Presented presented_ = wire::Presented::sample;
   std::array<bool, 3> felt_{};  ///< sample, A, B, in this trial
   Stopwatch watch_;             ///< of this trial

@@ -78,6 +78,8 @@ TEST(StudyCommand, TakesTheAnswersOfAScript) {
   EXPECT_EQ(wrong.code, 2);
   EXPECT_THAT(wrong.err, HasSubstr("wrong.txt:3: 'C' is no answer (A or B)"));
   EXPECT_EQ(test::run_rhexis("study angle-perception --experiment nowhere.toml").code, 2);
+  EXPECT_EQ(test::run_rhexis("study angle-perception --seed -1").code, 2);
+  EXPECT_EQ(test::run_rhexis(command + (folder / "answers.txt").string() + "' --with person --no-browser").code, 2);
   EXPECT_EQ(test::run_rhexis("study angle-perception --with people").code, 2);
 }
 

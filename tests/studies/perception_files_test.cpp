@@ -3,10 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
+
 #include "studies/angle_perception.h"
 #include "studies/perception_answers.h"
 #include "studies/perception_log.h"
 #include "studies/perception_plate.h"
+#include "studies/study_plate.h"
 #include "tests/support/run_command.h"
 
 namespace rhexis::studies {
@@ -45,6 +49,17 @@ TEST(PerceptionSettings, TheExampleSaysEveryKey) {
       EXPECT_THAT(docs, HasSubstr("`" + (section.name.empty() ? "" : section.name + ".") + key.name + "`"));
     }
   }
+}
+
+TEST(PerceptionSettings, OfAnotherPlateHaveAnotherFingerprint) {
+  const std::filesystem::path path = test::fresh_folder("plates") / "plate.toml";
+  PerceptionSettings settings = *read_perception({});
+  settings.scene = path;
+  const auto fingerprint = [&](const std::string& text) {
+    std::ofstream(path) << text;
+    return fingerprint_of(settings);
+  };
+  EXPECT_NE(fingerprint("title = \"one\""), fingerprint("title = \"two\""));
 }
 
 TEST(PerceptionSettings, NameEveryMistakeWithItsLine) {
@@ -97,6 +112,11 @@ TEST(PerceptionPlate, NamesWhatItCannotTake) {
   settings.scene = std::filesystem::path(RHEXIS_SOURCE_DIR) / "scenes/plate-tear.toml";
   EXPECT_THAT(PerceptionPlate::open(settings).error().message(),
               HasSubstr("plate-tear.toml: the body of an experiment"));
+  settings.scene = test::fresh_folder("soft") / "soft.toml";
+  std::string soft = plate_scene("Soft", 300);
+  std::ofstream(settings.scene) << soft.replace(soft.find("\"linear\""), 8, "\"corotated\"");
+  EXPECT_THAT(PerceptionPlate::open(settings).error().message(),
+              HasSubstr("soft.toml: a plate of model 'corotated' has another law at every pull (kind = \"linear\")"));
   settings = *parse_perception("[[point]]\nat = [0.24, 0.12, 0.0]\n", "e.toml");
   EXPECT_THAT(PerceptionPlate::open(settings).error().message(), StartsWith("e.toml:2: "));
 }
@@ -148,6 +168,42 @@ TEST(TrialLog, RefusesAnotherExperiment) {
   text.replace(text.find("\"difference\":45"), 15, "\"difference\":44");
   std::ofstream(path) << text;
   EXPECT_THAT(error(settings, 4), HasSubstr("trials.jsonl:2: this is not the trial that comes next"));
+  std::ofstream(path) << "nonsense\n";
+  EXPECT_THAT(error(settings, 4), HasSubstr("trials.jsonl:1: these are the answers to another experiment"));
+}
+
+TEST(TrialLog, GivesWayWhereNothingWasAnswered) {
+  const std::filesystem::path path = test::fresh_folder("log") / TrialLog::kName;
+  const PerceptionSettings settings = *read_perception({});
+  for (const std::uint64_t seed : {4U, 5U}) {
+    PerceptionExperiment experiment(settings, seed);
+    ASSERT_TRUE(TrialLog::open(path, settings, seed, experiment)) << seed;
+  }
+  const std::string kept = test::slurp(path);
+  EXPECT_THAT(kept, HasSubstr("\"seed\":5"));
+  EXPECT_EQ(std::count(kept.begin(), kept.end(), '\n'), 1);
+  std::filesystem::remove(path);
+  std::filesystem::create_directory(path);
+  PerceptionExperiment experiment(settings, 4);
+  EXPECT_THAT(TrialLog::open(path, settings, 4, experiment).error().message(), HasSubstr("trials.jsonl: not a file"));
+}
+
+TEST(ScriptedAnswers, AreNotKeptWhereALineIsWrong) {
+  const std::filesystem::path path = test::fresh_folder("script");
+  PerceptionSettings settings = *read_perception({});
+  const auto error = [&](const std::string& answers) {
+    std::ofstream(path / "answers.txt") << answers;
+    const auto rows = run_scripted_answers(settings, path / "answers.txt", *StudyFolder::open(path / "out"), go_on);
+    return rows ? std::string("none") : rows.error().message();
+  };
+  std::string many;
+  for (int k = 0; k < 61; ++k) many += "A\n";
+  EXPECT_THAT(error(many), HasSubstr("answers.txt:61: the experiment has 60 trials (no more answers)"));
+  const std::string kept = test::slurp(path / "out" / TrialLog::kName);
+  EXPECT_EQ(std::count(kept.begin(), kept.end(), '\n'), 1) << "what experiment it is, and no answer";
+  EXPECT_THAT(error("# none\n"), HasSubstr("answers.txt: there is no answer in it (A or B, a line each)"));
+  settings.scene = path / "nowhere.toml";
+  EXPECT_THAT(error("A\n"), HasSubstr("nowhere.toml: there is no such file"));
 }
 
 TEST(ScriptedAnswers, AreSavedAnalysedAndGoneOnWith) {

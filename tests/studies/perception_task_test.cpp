@@ -142,6 +142,25 @@ TEST(PerceptionTask, TakesAnAnswerWhenAllIsFeltAndKeepsIt) {
   EXPECT_EQ((*again)->show().number, 2U) << "the same command goes on";
 }
 
+TEST(PerceptionTask, OpensAnExperimentThatIsAtItsEnd) {
+  const std::filesystem::path path = test::fresh_folder("task-end") / TrialLog::kName;
+  const PerceptionSettings settings = *read_perception({});
+  PerceptionExperiment experiment(settings, settings.seed);
+  {
+    Expected<TrialLog> log = TrialLog::open(path, settings, settings.seed, experiment);
+    ASSERT_TRUE(log);
+    while (experiment.current() != nullptr) {
+      experiment.answer(Side::a);
+      ASSERT_TRUE(log->append(experiment.answered().back(), 0.0));
+    }
+  }
+  const Expected<std::shared_ptr<PerceptionTask>> task = PerceptionTask::make(settings, path);
+  ASSERT_TRUE(task) << task.error().message();
+  EXPECT_TRUE((*task)->standing().is_over);
+  EXPECT_EQ((*task)->answered().size(), experiment.answered().size());
+  EXPECT_TRUE((*task)->show().finished);
+}
+
 TEST(PerceptionTask, IsNoFreePlay) {
   TaskCase at("task-free");
   at.say(wire::ResetT{});

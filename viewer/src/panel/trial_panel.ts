@@ -75,7 +75,7 @@ const isAllFelt = (trial: Trial): boolean => Object.values(trial.felt).every(Boo
 
 function hintFor(trial: Trial): string {
   if (trial.finished) return `That was the last trial. Thank you. The answers are in ${trial.file}`;
-  const runs = `Run ${trial.runsDone + 1} of ${trial.runs}.`;
+  const runs = `${trial.runsDone} of ${trial.runs} runs done.`;
   if (isAllFelt(trial)) return `${runs} Feel them as often as you like, then answer`;
   return `${runs} Take hold of the plate anywhere and pull along the arrow: the sample, A and B, one after the other`;
 }
