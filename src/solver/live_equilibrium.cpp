@@ -259,8 +259,10 @@ bool LiveEquilibrium::follow(const Vec3& hand, LiveFrame& frame) {
     return true;
   }
   frame.reached = false;
-  frame.trouble = fmt::format("the body cannot follow: tet {} would turn inside out",
-                              next.evaluation.worst_tet.valid() ? next.evaluation.worst_tet.value() : -1);
+  frame.trouble =
+      next.evaluation.worst_tet.valid()
+          ? fmt::format("the body cannot follow: tet {} would turn inside out", next.evaluation.worst_tet.value())
+          : "the body cannot follow: its forces would be no finite numbers";
   now_ = evaluate(state_);
   return false;
 }
@@ -334,7 +336,10 @@ LiveFrame LiveEquilibrium::advance(const Vec3* hand) {
   std::optional<OneThreadHere> beside;  // the refresh, which has a core of its own
   if (linear_.is_refreshing()) beside.emplace();
   frame.reached = hand == nullptr || now_.relative <= options_.late;
-  if (hand != nullptr && frame.reached && !follow(*hand, frame)) return frame;
+  if (hand != nullptr && frame.reached && !follow(*hand, frame)) {
+    frame.residual = now_.relative;
+    return frame;
+  }
   const int most = now_.relative > options_.late ? kLateCorrections : options_.corrections;
   const double tolerance = held_ ? options_.tolerance : std::min(options_.tolerance, options_.at_rest);
   while (frame.corrections < most && now_.relative > tolerance) {

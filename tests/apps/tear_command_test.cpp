@@ -33,6 +33,19 @@ const mesh::Field& field_of(const mesh::MeshFile& file, const std::string& name)
 
 Vec3 vector_of(const json& list) { return {list[0].get<double>(), list[1].get<double>(), list[2].get<double>()}; }
 
+/// Once its force grew to a million newtons, and then was no number.
+TEST(TearCommand, ASoftBarNearIncompressibilityHasTheForceOfASoftBar) {
+  const fs::path out = test::fresh_folder("tear");
+  const test::Ran ran =
+      test::run_rhexis("tear scenes/bar-soft.toml --set material.poisson=0.49 --json --out '" + out.string() + "'");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const json summary = json::parse(ran.out);
+  EXPECT_GE(summary["advances"].size(), 3U);
+  EXPECT_GT(summary["largest_force"].get<double>(), 0.1);
+  EXPECT_LT(summary["largest_force"].get<double>(), 1.0);  // 0.37 N
+  EXPECT_THAT(test::slurp(out / "force.csv"), testing::Not(HasSubstr("nan")));
+}
+
 TEST(TearCommand, WritesEveryTopologyTheTraceAndTheSummary) {
   const fs::path out = test::fresh_folder("tear");
   const test::Ran ran = tear("", out);
