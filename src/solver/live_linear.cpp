@@ -13,9 +13,9 @@
 namespace rhexis::solver {
 namespace {
 
-/// Error of the map that stands in for C^-1 within an iteration: conjugate gradients take as many iterations with 0.5
+/// Error of the map that stands in for C^-1 within an iteration: conjugate gradients take as many iterations with 0.3
 /// as with 0.01. What it leaves is left in the residual, which is taken with C itself.
-constexpr double kPressureReduction = 5e-1;
+constexpr double kPressureReduction = 3e-1;
 /// The same where E W is made.
 constexpr double kPatchReduction = 1e-4;
 
