@@ -32,8 +32,10 @@ constexpr double kProgress = 0.9;
 /// Corrections of a frame that is late, and how much further each is solved.
 constexpr int kLateCorrections = 2;
 constexpr int kLateIterations = 3;
-/// Iterations more than when it was new, from which on a preconditioner is made anew at the present state.
-constexpr int kWornIterations = 2;
+/// Iterations from which on a preconditioner is made anew at the present state; of a body in a hand that is in time so
+/// many more than when it was new, since the making takes a core.
+constexpr int kWornIterations = 4;
+constexpr int kWornMore = 2;
 
 }  // namespace
 
@@ -277,7 +279,9 @@ bool LiveEquilibrium::correct(LiveFrame& frame) {
       linear_.solve(LiveLinear::Point::fixed, rhs_u_, rhs_lambda_, options_.forcing, most, du_, dlambda_);
   frame.linear_iterations += solve.iterations;
   if (iterations_when_new_ == 0) iterations_when_new_ = std::max(1, solve.iterations);
-  worn_ = worn_ || solve.iterations >= iterations_when_new_ + kWornIterations || solve.truncated;
+  const bool has_haste = held_ && now_.relative <= options_.late;
+  const int worn_from = has_haste ? iterations_when_new_ + kWornMore : kWornIterations;
+  worn_ = worn_ || solve.iterations >= worn_from || solve.truncated;
   for (int halving = 0; halving <= kHalvings; ++halving) {
     const double part = std::ldexp(1.0, -halving);
     trial_.u = state_.u + part * du_;

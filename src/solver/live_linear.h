@@ -58,7 +58,7 @@ struct TornModel {
 
 /// Iterations of the caller after which a preconditioner that was begun beside him is taken up: by then it is ready,
 /// mostly.
-inline constexpr int kRefreshWork = 100;
+inline constexpr int kRefreshWork = 60;
 
 struct LiveSolve {
   int iterations = 0;
