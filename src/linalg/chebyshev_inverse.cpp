@@ -153,13 +153,9 @@ void ChebyshevInverse::take_patches(Scaled& exact) {
 /// Of M without the patches, by Lanczos from a vector that has a part of everything: an estimate from above.
 double ChebyshevInverse::smallest_eigenvalue(const Scaled& exact) const {
   const VectorX weight = exact.root.cwiseInverse();
-  VectorX sums(static_cast<Eigen::Index>(patches()));
+  VectorX sums;
   const auto project = [&](VectorX& v) {  // v -= M Q v
-    for (std::size_t k = 0; k < patches(); ++k) {
-      const std::int32_t begin = patch_start_[k];
-      const std::int32_t size = patch_start_[k + 1] - begin;
-      sums[static_cast<Eigen::Index>(k)] = weight.segment(begin, size).dot(v.segment(begin, size));
-    }
+    multiply_patches(weight, v, sums);
     exact.coarse.solveInPlace(sums);
     v.noalias() -= exact.product * sums;
   };
@@ -194,22 +190,12 @@ double ChebyshevInverse::smallest_eigenvalue(const Scaled& exact) const {
 }
 
 void ChebyshevInverse::solve_smooth(const Eigen::VectorXf& v, Work& work) const {
-  work.coarse.resize(static_cast<Eigen::Index>(patches()));
-  for (std::size_t k = 0; k < patches(); ++k) {
-    const std::int32_t begin = patch_start_[k];
-    const std::int32_t size = patch_start_[k + 1] - begin;
-    work.coarse[static_cast<Eigen::Index>(k)] = weight_.segment(begin, size).dot(v.segment(begin, size));
-  }
+  multiply_patches(weight_, v, work.coarse);
   work.solved.noalias() = coarse_ * work.coarse;
 }
 
 void ChebyshevInverse::solve_smooth_of_product(const Eigen::VectorXf& v, Work& work) const {
-  work.coarse.resize(static_cast<Eigen::Index>(patches()));
-  for (std::size_t k = 0; k < patches(); ++k) {
-    const std::int32_t begin = patch_start_[k];
-    const std::int32_t size = patch_start_[k + 1] - begin;
-    work.coarse[static_cast<Eigen::Index>(k)] = near_.segment(begin, size).dot(v.segment(begin, size));
-  }
+  multiply_patches(near_, v, work.coarse);
   for (const Far& far : far_) work.coarse[far.patch] += far.value * v[far.row];
   work.solved.noalias() = coarse_ * work.coarse;
 }

@@ -64,6 +64,16 @@ class ChebyshevInverse {
       sum += value_[static_cast<std::size_t>(p)] * x[col_[static_cast<std::size_t>(p)]];
     return sum;
   }
+  /// Per patch, the product of its parts of two vectors.
+  template <typename Vector>
+  void multiply_patches(const Vector& a, const Vector& b, Vector& sums) const {
+    sums.resize(static_cast<Eigen::Index>(patches()));
+    for (std::size_t k = 0; k < patches(); ++k) {
+      const std::int32_t begin = patch_start_[k];
+      const std::int32_t size = patch_start_[k + 1] - begin;
+      sums[static_cast<Eigen::Index>(k)] = a.segment(begin, size).dot(b.segment(begin, size));
+    }
+  }
   /// solved = (W^T M W)^-1 W^T v, or (W^T M W)^-1 W^T M v.
   void solve_smooth(const Eigen::VectorXf& v, Work& work) const;
   void solve_smooth_of_product(const Eigen::VectorXf& v, Work& work) const;

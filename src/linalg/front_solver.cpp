@@ -56,7 +56,7 @@ FrontSolver::FrontSolver(const FrontTree& tree, const FrontSolver* before) {
     for (const linalg::Incoming& from : fronts[s]->incoming) {
       const Step& other = steps_[at(step_of[at(from.component)])];
       const auto first_run = static_cast<std::int32_t>(runs_.size());
-      for (const linalg::Run& run : from.runs) runs_.push_back({run.from, run.to, run.length});
+      runs_.insert(runs_.end(), from.runs.begin(), from.runs.end());
       incoming_.push_back({other.work + other.pivots, first_run, static_cast<std::int32_t>(runs_.size())});
     }
     steps_[s].last_incoming = static_cast<std::int32_t>(incoming_.size());

@@ -12,11 +12,10 @@
 
 #include <Eigen/Core>
 
+#include "linalg/front.h"
 #include "linalg/front_tree.h"
 
 namespace rhexis::linalg {
-
-struct Front;
 
 class FrontSolver {
  public:
@@ -37,11 +36,8 @@ class FrontSolver {
   struct Panel;
   /// What a front before this one has left, and where it goes.
   struct Incoming {
-    std::int32_t from;  ///< in the work vectors
+    std::int32_t from;  ///< in the work vectors; the runs count from there
     std::int32_t first_run, last_run;
-  };
-  struct Run {
-    std::int32_t from, to, length;  ///< behind Incoming::from, in the front
   };
   struct Step {
     std::int32_t pivots, size;

@@ -108,20 +108,26 @@ class TetTangents final : public linalg::ElementSource {
   double shift_ = 0.0;
 };
 
+/// What a map (b, x) gives of each column.
+template <typename Map>
+linalg::PressurePatches::Solve by_columns(Map map) {
+  return [map](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
+    VectorX column;
+    VectorX solved;
+    for (Eigen::Index j = 0; j < b.cols(); ++j) {
+      column = b.col(j);
+      map(column, solved);
+      x.col(j) = solved;
+    }
+  };
+}
+
 /// Patches of C, and what else of it a preconditioner keeps: A and B set a weight alone.
 linalg::PressurePatches patches_of(const linalg::SaddleMatrix& K) {
   linalg::PressurePatches out;
   const linalg::ChebyshevInverse inverse(K.C, kPatchReduction);
-  out.set(K, [&](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
-    VectorX column;
-    VectorX solved;
-    linalg::ChebyshevInverse::Work work;
-    for (Eigen::Index j = 0; j < b.cols(); ++j) {
-      column = b.col(j);
-      inverse.apply(column, solved, work);
-      x.col(j) = solved;
-    }
-  });
+  linalg::ChebyshevInverse::Work work;
+  out.set(K, by_columns([&](const VectorX& b, VectorX& x) { inverse.apply(b, x, work); }));
   return out;
 }
 
@@ -187,16 +193,8 @@ LiveLinear::Prepared LiveLinear::prepare(const std::shared_ptr<const model::Mode
   }
   out->solver = std::make_shared<const linalg::FrontSolver>(*out->tree);
   if (out->patches.count() > 0) {
-    out->patches.correct(K, free, [&](const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {
-      VectorX column;
-      VectorX solved;
-      linalg::FrontSolver::Work work;
-      for (Eigen::Index j = 0; j < b.cols(); ++j) {
-        column = b.col(j);
-        out->solver->solve(column, solved, work);
-        x.col(j) = solved;
-      }
-    });
+    linalg::FrontSolver::Work work;
+    out->patches.correct(K, free, by_columns([&](const VectorX& b, VectorX& x) { out->solver->solve(b, x, work); }));
   }
   return out;
 }

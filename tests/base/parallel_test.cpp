@@ -86,8 +86,7 @@ TEST_P(Parallel, ExceptionReachesTheCaller) {
 }
 
 // More threads than cores come when they are asked for: else the tests of determinism would compare a run with itself.
-TEST_P(Parallel, ThreadsAreThere) {
-  const std::size_t threads = static_cast<std::size_t>(GetParam());
+void expect_threads(std::size_t threads) {
   std::atomic<std::size_t> arrived = 0;
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
   parallel_for(threads, [&](std::size_t) {
@@ -95,6 +94,20 @@ TEST_P(Parallel, ThreadsAreThere) {
     while (arrived < threads && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
   });
   EXPECT_LT(std::chrono::steady_clock::now(), deadline);
+}
+
+TEST_P(Parallel, ThreadsAreThere) { expect_threads(static_cast<std::size_t>(GetParam())); }
+
+TEST_P(Parallel, OnOneThreadHereAndOnAllAgainAfterwards) {
+  const std::thread::id here = std::this_thread::get_id();
+  {
+    const OneThreadHere outer;
+    { const OneThreadHere inner; }
+    std::atomic<bool> all = true;
+    parallel_for(1000, [&](std::size_t) { all = all && std::this_thread::get_id() == here; });
+    EXPECT_TRUE(all);
+  }
+  expect_threads(static_cast<std::size_t>(GetParam()));
 }
 
 TEST_P(Parallel, CountIsAsSet) { EXPECT_EQ(thread_count(), GetParam()); }
