@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "element/linear_tet.h"
 #include "model/space.h"
 
 namespace rhexis::solver {
@@ -31,7 +30,8 @@ class NodeRotations {
  private:
   struct Tet {
     std::array<std::int32_t, 4> node;
-    element::LinearTet shape;  ///< reference
+    double volume;                      ///< m^3, reference
+    Eigen::Matrix<double, 3, 4> slope;  ///< volume times the gradients of the shape functions, m^2
   };
   std::vector<Tet> tets_;
   std::size_t nodes_;
