@@ -153,10 +153,13 @@ Vec3 LiveResponse::target(const Vec3& hand) const {
   return rest + std::min(0.0, force) * (C * n);
 }
 
+/// What the point would give way by if nothing held it; downhill also where it is about to snap.
+Vec3 LiveResponse::way_back() const { return made_definite(live_->compliance()) * live_->force(); }
+
 /// Some way to where nothing would hold the point: a body that is let go far from rest comes back in steps that its
 /// tangent can tell.
 Vec3 LiveResponse::released() const {
-  Vec3 way = live_->compliance() * live_->force();
+  Vec3 way = way_back();
   const double longest = kLongestStep * size_;
   if (way.norm() > longest) way *= longest / way.norm();
   return live_->point() - way;
@@ -171,7 +174,7 @@ MoveReport LiveResponse::move(const Vec3& hand) {
       frame = live_->step(target(hand));
     } else if (leaving_) {
       frame = live_->step(released());
-      const bool is_free = frame.reached && (live_->compliance() * live_->force()).norm() <= kFree * size_;
+      const bool is_free = frame.reached && way_back().norm() <= kFree * size_;
       if (is_free || !frame.trouble.empty()) let_go();
       out.at_rest = false;
       out.late = frame.trouble;

@@ -61,6 +61,7 @@ class LiveResponse final : public Response {
   void make_live(model::State state);
   void take_hold();
   void let_go();
+  [[nodiscard]] Vec3 way_back() const;
   [[nodiscard]] Vec3 released() const;
   [[nodiscard]] Expected<model::State> equilibrium_from_rest() const;
   void begin_again();

@@ -26,6 +26,10 @@ constexpr int kMostFirstIterations = 200;
 constexpr int kAnswerRounds = 4;
 /// Of the body's size: what takes less force to move the hand by is near to rest, and a residual is held against that.
 constexpr double kSmallMove = 0.01;
+/// Relative residual of a column of Z with which it is none; it is solved for carefully then.
+constexpr double kNoAnswer = 0.5;
+/// Of a step that is to lessen the energy.
+constexpr int kEnergyHalvings = 12;
 /// Late frames in a row that do not lessen the residual by kProgress, after which the state is given up.
 constexpr int kMostIdleFrames = 20;
 constexpr double kProgress = 0.9;
@@ -132,6 +136,7 @@ int LiveEquilibrium::refresh_answer(int column, double tolerance, int most) {
   VectorX& lambda = answer_lambda_[static_cast<std::size_t>(column)];
   size_.set_system(tangent_, free_);
   int iterations = 0;
+  bool careful = false;
   // The polynomial for C^-1 leaves something of the pressure's row: once more from what is left.
   double before = std::numeric_limits<double>::infinity();
   for (int round = 0;; ++round) {
@@ -139,17 +144,20 @@ int LiveEquilibrium::refresh_answer(int column, double tolerance, int most) {
     rhs_lambda_.setZero();
     held_->add(Vec3::Unit(column), rhs_u_);
     const double left = size_.measure(rhs_u_, rhs_lambda_, u, lambda) / held_->weight.norm();
-    if (round > 0 && !(left < before)) {  // no answer, near where the body gives way: as it was
+    if (round > 0 && !(left < before)) {  // near where the body gives way
       u -= du_;
       lambda -= dlambda_;
       worn_ = true;
-      return 0;
+      if (before < kNoAnswer || careful) break;
+      careful = true;
+      before = std::numeric_limits<double>::infinity();
+      continue;
     }
     if (left <= tolerance || iterations >= most || round == kAnswerRounds) break;
     before = left;
     iterations += linear_
                       .solve(LiveLinear::Point::free, size_.u(), size_.p(), std::min(0.5, 0.5 * tolerance / left),
-                             most - iterations, du_, dlambda_)
+                             most - iterations, careful, du_, dlambda_)
                       .iterations;
     if (!du_.allFinite() || !dlambda_.allFinite()) break;
     u += du_;
@@ -190,7 +198,8 @@ void LiveEquilibrium::update_compliance() {
   compliance_ = 0.5 * (C + C.transpose());
   stiffness_ = compliance_.inverse();
   from_gap_ = C.inverse();
-  small_force_ = kSmallMove * size_of_body_ * stiffness_.norm();
+  const double small_force = kSmallMove * size_of_body_ * stiffness_.norm();
+  small_force_ = small_force_ > 0.0 ? std::min(small_force_, small_force) : small_force;
 }
 
 void LiveEquilibrium::hold(const HeldPoint& point) {
@@ -200,6 +209,7 @@ void LiveEquilibrium::hold(const HeldPoint& point) {
                    support.dof / 3);
   }
   held_ = point;
+  small_force_ = 0.0;
   linear_.set_constraint(held_);
   force_.setZero();
   build_tangent();
@@ -272,30 +282,62 @@ bool LiveEquilibrium::follow(const Vec3& hand, LiveFrame& frame) {
 /// One Newton correction that leaves the point where it is. False: none was taken.
 bool LiveEquilibrium::correct(LiveFrame& frame) {
   build_tangent();
-  rhs_u_ = -residual_.u;
-  rhs_lambda_ = -residual_.lambda;
   const int most = (now_.relative > options_.late ? kLateIterations : 1) * options_.iterations;
-  const LiveSolve solve =
-      linear_.solve(LiveLinear::Point::fixed, rhs_u_, rhs_lambda_, options_.forcing, most, du_, dlambda_);
-  frame.linear_iterations += solve.iterations;
-  if (iterations_when_new_ == 0) iterations_when_new_ = std::max(1, solve.iterations);
-  const bool has_haste = held_ && now_.relative <= options_.late;
-  const int worn_from = has_haste ? iterations_when_new_ + kWornMore : kWornIterations;
-  worn_ = worn_ || solve.iterations >= worn_from || solve.truncated;
-  for (int halving = 0; halving <= kHalvings; ++halving) {
+  for (const bool careful : {false, true}) {
+    rhs_u_ = -residual_.u;
+    rhs_lambda_ = -residual_.lambda;
+    const LiveSolve solve =
+        linear_.solve(LiveLinear::Point::fixed, rhs_u_, rhs_lambda_, options_.forcing, most, careful, du_, dlambda_);
+    frame.linear_iterations += solve.iterations;
+    if (iterations_when_new_ == 0) iterations_when_new_ = std::max(1, solve.iterations);
+    const bool has_haste = held_ && now_.relative <= options_.late;
+    const int worn_from = has_haste ? iterations_when_new_ + kWornMore : kWornIterations;
+    worn_ = worn_ || solve.iterations >= worn_from || solve.truncated;
+    if (take_correction(solve.truncated)) {
+      ++frame.corrections;
+      return true;
+    }
+    now_ = evaluate(state_);
+  }
+  frame.trouble = "a correction would make it worse";
+  return false;
+}
+
+/// As far along (du, dlambda) as the residual does not grow, or as the energy falls, which it can where the residual
+/// has a valley of its own: a body that snaps through. False: neither.
+bool LiveEquilibrium::take_correction(bool downhill_only) {
+  const auto try_part = [&](int halving) {
     const double part = std::ldexp(1.0, -halving);
     trial_.u = state_.u + part * du_;
     trial_.lambda = state_.lambda + part * dlambda_;
-    const Trial next = evaluate(trial_);
-    if (!is_admissible(next) || next.norm > (cautious_ ? 1.0 : kGrowth) * now_.norm) continue;
+    return evaluate(trial_);
+  };
+  const auto take = [&](const Trial& next) {
     std::swap(state_, trial_);
     now_ = next;
-    ++frame.corrections;
     return true;
+  };
+  for (int halving = 0; !downhill_only && halving <= kHalvings; ++halving) {
+    const Trial next = try_part(halving);
+    if (is_admissible(next) && next.norm <= (cautious_ ? 1.0 : kGrowth) * now_.norm) return take(next);
   }
-  frame.trouble = "a correction would make it worse";
   now_ = evaluate(state_);
+  const double energy = stored_energy(state_);
+  const VectorX load = external_;
+  for (int halving = 0; halving <= kEnergyHalvings; ++halving) {
+    const Trial next = try_part(halving);
+    if (!is_admissible(next) || next.norm > kGrowth * now_.norm) continue;
+    // Of loads that follow the surface by the trapezium.
+    const double work = 0.5 * (load + external_).dot(trial_.u - state_.u);
+    if (stored_energy(trial_) - work < energy) return take(next);
+  }
   return false;
+}
+
+/// J, of the state that was evaluated last, with the pressures where they make it greatest: the energy is quadratic in
+/// them, so Pi + r^T C^-1 r / 2, r their residual.
+double LiveEquilibrium::stored_energy(const model::State& state) {
+  return model_->energy(state) + linear_.energy_of_pressure(residual_.lambda);
 }
 
 /// One column while the body moves, which turns them all; all of them where there is time, and to a fifth of that.
@@ -347,7 +389,9 @@ LiveFrame LiveEquilibrium::advance(const Vec3* hand) {
   const int most = now_.relative > options_.late ? kLateCorrections : options_.corrections;
   const double tolerance = held_ ? options_.tolerance : std::min(options_.tolerance, options_.at_rest);
   while (frame.corrections < most && now_.relative > tolerance) {
-    if (!correct(frame)) break;
+    if (correct(frame)) continue;
+    frame.gave_up = !held_ && frame.corrections == 0;  // nothing else will move it
+    break;
   }
   if (held_) refresh_answers(frame);
   keep_good(frame);

@@ -38,7 +38,8 @@ struct LiveFrame {
   int linear_iterations = 0;
   double residual = 0.0;   ///< relative to internal and external force, after the frame
   bool refreshed = false;  ///< a preconditioner that was made in the background was taken up
-  bool gave_up = false;    ///< it did not come nearer to equilibrium for long: back to where it began
+  bool gave_up = false;    ///< it did not come nearer to equilibrium for long, and is back where it began; or, without
+                           ///< a hand, no correction brings it nearer
   std::string trouble;     ///< one line, empty when there was none
 };
 
@@ -89,6 +90,8 @@ class LiveEquilibrium {
   LiveFrame advance(const Vec3* hand);
   bool follow(const Vec3& hand, LiveFrame& frame);
   bool correct(LiveFrame& frame);
+  bool take_correction(bool downhill_only);
+  [[nodiscard]] double stored_energy(const model::State& state);
   void keep_good(LiveFrame& frame);
   /// Leaves the residual in residual_ and the hand's force that makes it least in multiplier_.
   Trial evaluate(const model::State& state);
@@ -133,7 +136,7 @@ class LiveEquilibrium {
   bool worn_ = false;            ///< the frame has found the preconditioner wanting
   int iterations_when_new_ = 0;  ///< of the first correction with it; 0: there was none
   double size_of_body_ = 0.0;    ///< m
-  double small_force_ = 0.0;     ///< N
+  double small_force_ = 0.0;     ///< N, the least since it took hold
   VectorX du_, dlambda_, rhs_u_, rhs_lambda_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -18,6 +19,11 @@ namespace {
 constexpr double kPressureReduction = 3e-1;
 /// The same where E W is made.
 constexpr double kPatchReduction = 1e-4;
+/// Of what it leaves: to a percent.
+constexpr int kCarefulRounds = 3;
+/// A direction of negative curvature is followed as far as if its curvature were positive, and that at least this part
+/// of the preconditioner's.
+constexpr double kFlat = 0.1;
 
 /// The tangents of the tets, with their pressures eliminated by D, each at the state of its last look.
 class TetTangents final : public linalg::ElementSource {
@@ -271,7 +277,7 @@ void LiveLinear::apply(const VectorX& x, VectorX& y) {
   K_->A.multiply(x, y);
   if (q_.size() > 0) {
     K_->B.multiply(x, q_);
-    c_inverse_.apply(q_, p_, c_work_);
+    invert_pressure(q_, p_, careful_);
     K_->B.add_transposed(p_, 1.0, y);
   }
   linalg::clear_held(free_, y);
@@ -320,14 +326,33 @@ void LiveLinear::precondition(const VectorX& r, VectorX& z) {
   for (std::size_t j = 0; j < 3; ++j) z -= off[static_cast<Eigen::Index>(j)] * answer_[j];
 }
 
-LiveSolve LiveLinear::solve(Point point, const VectorX& bu, const VectorX& bp, double tolerance, int most, VectorX& xu,
-                            VectorX& xp) {
+/// x ~ C^-1 b, not in place. Carefully: what the map leaves, some times over.
+void LiveLinear::invert_pressure(const VectorX& b, VectorX& x, bool careful) {
+  c_inverse_.apply(b, x, c_work_);
+  for (int round = 0; careful && round < kCarefulRounds; ++round) {
+    left_.resize(b.size());
+    K_->C.multiply(x, left_);
+    left_ = b - left_;
+    c_inverse_.apply(left_, more_, c_work_);
+    x += more_;
+  }
+}
+
+double LiveLinear::energy_of_pressure(const VectorX& rp) {
+  if (rp.size() == 0) return 0.0;
+  invert_pressure(rp, p_, true);
+  return 0.5 * rp.dot(p_);
+}
+
+LiveSolve LiveLinear::solve(Point point, const VectorX& bu, const VectorX& bp, double tolerance, int most, bool careful,
+                            VectorX& xu, VectorX& xp) {
   RHEXIS_CHECK(K_ != nullptr, "no tangent");
   LiveSolve out;
+  careful_ = careful;
   constrained_ = point == Point::fixed && point_.has_value();
   r_ = bu;
   if (bp.size() > 0) {
-    c_inverse_.apply(bp, p_, c_work_);
+    invert_pressure(bp, p_, careful_);
     K_->B.add_transposed(p_, 1.0, r_);
   }
   linalg::clear_held(free_, r_);
@@ -341,13 +366,16 @@ LiveSolve LiveLinear::solve(Point point, const VectorX& bu, const VectorX& bp, d
     out.iterations = result.iterations;
     worked_ += result.iterations;
     out.truncated = result.end == linalg::CgEnd::negative_curvature;
-    if (out.truncated && result.iterations == 1) xu = work_.z;  // nothing yet: the preconditioned residual, downhill
+    if (out.truncated) {
+      const double slope = r_.dot(work_.z);
+      xu += slope / std::max(std::abs(work_.p.dot(work_.q)), kFlat * slope) * work_.p;
+    }
   }
   xp.setZero(bp.size());
   if (bp.size() > 0) {
     K_->B.multiply(xu, q_);
     q_ -= bp;
-    c_inverse_.apply(q_, xp, c_work_);
+    invert_pressure(q_, xp, careful_);
   }
   return out;
 }

@@ -62,7 +62,8 @@ inline constexpr int kRefreshWork = 60;
 
 struct LiveSolve {
   int iterations = 0;
-  bool truncated = false;  ///< a direction of negative curvature was met, and what there was before it is the answer
+  bool truncated = false;  ///< a direction of negative curvature was met: the answer goes on along it (Steihaug 1983),
+                           ///< which is downhill in energy, and may be uphill in the residual
 };
 
 class LiveLinear {
@@ -87,8 +88,12 @@ class LiveLinear {
   /// `fixed`: with N xu = 0, by projection of the residuals and a preconditioner that knows the constraint (Gould,
   /// Hribar, Nocedal 2001); what is left of a residual along N^T is the force that keeps it, and counts as nothing.
   enum class Point { free, fixed };
-  LiveSolve solve(Point point, const VectorX& bu, const VectorX& bp, double tolerance, int most, VectorX& xu,
-                  VectorX& xp);
+  /// `careful`: with C^-1 to a percent and not to a third, for several times its price: for a body that is about to
+  /// give way, whose tangent is definite by the pressures alone.
+  LiveSolve solve(Point point, const VectorX& bu, const VectorX& bp, double tolerance, int most, bool careful,
+                  VectorX& xu, VectorX& xp);
+  /// r^T C^-1 r / 2, J: what the stored energy has to gain by the pressures, from their residual r.
+  [[nodiscard]] double energy_of_pressure(const VectorX& rp);
   /// Starts to prepare another preconditioner at `state` beside the caller, unless one is under way.
   void refresh(const model::State& state);
   /// Takes it up when it is due, that is after kRefreshWork iterations, and waits for it then: a count and no clock, so
@@ -106,6 +111,7 @@ class LiveLinear {
                                         const model::State& state, const Preconditioner* before);
   /// After the body has torn, at a state of the present model. Null: it would not be definite.
   [[nodiscard]] Prepared followed(const Preconditioner& before, const model::State& state, const TornModel& torn) const;
+  void invert_pressure(const VectorX& b, VectorX& x, bool careful);
   void apply(const VectorX& x, VectorX& y);
   void precondition(const VectorX& r, VectorX& z);
   void project(VectorX& r) const;
@@ -123,13 +129,15 @@ class LiveLinear {
   std::vector<Mat3> turn_;      ///< T, since the preconditioner's state
   VectorX turned_, solved_;
 
-  bool constrained_ = false;  ///< the solve under way
+  bool careful_ = false;      ///< the solve under way
+  bool constrained_ = false;  ///< and that
   std::optional<HeldPoint> point_;
   std::vector<VectorX> of_nodes_;       ///< P~^-1 of each dof of the point's nodes, as the preconditioner lies
   std::array<VectorX, 3> answer_;       ///< P~^-1 N^T, turned
   Mat3 answer_inverse_ = Mat3::Zero();  ///< (N P~^-1 N^T)^-1
   linalg::CgWorkspace work_;
   VectorX r_, p_, q_;
+  VectorX left_, more_;  ///< of a careful inverse
   linalg::ChebyshevInverse::Work c_work_;
   linalg::FrontSolver::Work front_work_;
 

@@ -36,22 +36,18 @@ NodeRotations::NodeRotations(const model::DisplacementSpace& space, std::span<co
     if (!left_out.empty() && left_out[t] != 0) continue;
     Tet& tet = tets_.emplace_back();
     for (std::size_t a = 0; a < 4; ++a) tet.node[a] = space.connectivity[4 * t + a];
-    const auto X = [&](std::size_t a) -> const Vec3& { return space.nodes[static_cast<std::size_t>(tet.node[a])]; };
-    Mat3 edges;
-    for (std::size_t a = 0; a < 3; ++a) edges.row(static_cast<Eigen::Index>(a)) = X(a + 1) - X(0);
-    tet.volume = std::abs(edges.determinant()) / 6.0;
-    tet.slope.rightCols<3>() = tet.volume * edges.inverse();
-    tet.slope.col(0) = -tet.slope.rightCols<3>().rowwise().sum();
+    std::array<Vec3, 4> corners;
+    for (std::size_t a = 0; a < 4; ++a) corners[a] = space.nodes[static_cast<std::size_t>(tet.node[a])];
+    tet.shape = element::make_linear_tet(corners);
   }
 }
 
 void NodeRotations::measure(const VectorX& u, std::vector<Mat3>& out) const {
   out.assign(nodes_, Mat3::Zero());
   for (const Tet& tet : tets_) {
-    Mat3 F = tet.volume * Mat3::Identity();
-    for (std::size_t a = 0; a < 4; ++a)
-      F.noalias() +=
-          u.segment<3>(3 * Eigen::Index{tet.node[a]}) * tet.slope.col(static_cast<Eigen::Index>(a)).transpose();
+    std::array<Vec3, 4> w;
+    for (std::size_t a = 0; a < 4; ++a) w[a] = u.segment<3>(3 * Eigen::Index{tet.node[a]});
+    const Mat3 F = tet.shape.volume * (Mat3::Identity() + element::displacement_gradient(tet.shape, w));
     for (const std::int32_t node : tet.node) out[static_cast<std::size_t>(node)] += F;
   }
   for (Mat3& F : out) F = rotation_of(F);

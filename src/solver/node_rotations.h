@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "element/linear_tet.h"
 #include "model/space.h"
 
 namespace rhexis::solver {
@@ -30,8 +31,7 @@ class NodeRotations {
  private:
   struct Tet {
     std::array<std::int32_t, 4> node;
-    double volume;                      ///< m^3, reference
-    Eigen::Matrix<double, 3, 4> slope;  ///< volume times the gradients of the shape functions, m^2
+    element::LinearTet shape;  ///< reference
   };
   std::vector<Tet> tets_;
   std::size_t nodes_;

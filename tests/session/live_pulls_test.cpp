@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <numeric>
+#include <vector>
 
 #include "fracture/incision.h"
 #include "mesh/generate.h"
@@ -34,6 +36,7 @@ struct LiveTally {
   int held = 0;              ///< topologies at which the held body was held against the full solve
   int released = 0;          ///< the same, let go
   int no_oracle = 0;         ///< of those, full solves that did not converge
+  int others = 0;            ///< let go, at rest in another equilibrium than what is found from the undeformed body
   double worst_force = 0.0;  ///< relative to the full solve
   double worst_place = 0.0;  ///< of a node, part of the body's size
   double least_J = 1.0;
@@ -173,9 +176,7 @@ class LivePull {
     tear_->displacement(u);
     const FullSolve full(tear_->body(), body(), u);
     const Vec3 at = u.segment<3>(3 * Eigen::Index{tear_->hand().point().node[0].value()});
-    model::State near = full.at_rest();
-    near.u = u;
-    const FullSolve::Held exact = full.held(tear_->hand().point().node[0], at, near);
+    const FullSolve::Held exact = full.held(tear_->hand().point().node[0], at, full.state_at(u));
     ++tally.held;
     if (!exact.converged) {
       ++tally.no_oracle;
@@ -186,7 +187,9 @@ class LivePull {
     tally.worst_force = std::max(tally.worst_force, error);
   }
 
-  /// Let go, it comes to the equilibrium of what is left, as the full solve finds it from rest.
+  /// Let go, it comes to an equilibrium of what is left, and to one that it stays in: the full solve moves it no more,
+  /// and finds no direction in which the energy falls. Mostly it is the one that is found from rest; a torn body may
+  /// have several (a flap that hangs on the one side or the other).
   void settle(LiveTally& tally) {
     TickReport report;
     for (int k = 0; k < 600; ++k) {
@@ -198,15 +201,17 @@ class LivePull {
     VectorX u;
     tear_->displacement(u);
     const FullSolve full(tear_->body(), body(), u);
-    const FullSolve::Held exact = full.released(full.at_rest(), 4);
+    const FullSolve::Held exact = full.released(full.state_at(u));
     ++tally.released;
-    if (!exact.converged) {
-      ++tally.no_oracle;
-      return;
-    }
-    const double error = (u - exact.state.u).lpNorm<Eigen::Infinity>() / box_.size().norm();
-    EXPECT_LT(error, 1e-3) << seed_ << " topology " << tear_->body().topology();
-    tally.worst_place = std::max(tally.worst_place, error);
+    EXPECT_TRUE(exact.converged) << seed_ << " topology " << tear_->body().topology();
+    EXPECT_TRUE(exact.stable) << seed_ << " topology " << tear_->body().topology();
+    const auto apart = [&](const FullSolve::Held& other) {
+      return (u - other.state.u).lpNorm<Eigen::Infinity>() / box_.size().norm();
+    };
+    EXPECT_LT(apart(exact), 1e-6) << seed_ << " topology " << tear_->body().topology();
+    tally.worst_place = std::max(tally.worst_place, apart(exact));
+    const FullSolve::Held from_rest = full.released(full.at_rest(), 4);
+    if (from_rest.converged && apart(from_rest) > 1e-3) ++tally.others;
   }
 
   std::uint64_t seed_;
@@ -223,15 +228,20 @@ TEST(LivePulls, TearWithoutHarmAndComeToTheEquilibriumOfTheTornBody) {
   const char* first = std::getenv("RHEXIS_FIRST_PULL");
   const int from = first != nullptr ? std::atoi(first) : 0;
   const int count = pull_count();
-  for (int seed = from; seed < from + count; ++seed) {
+  std::vector<int> seeds(static_cast<std::size_t>(count));
+  std::iota(seeds.begin(), seeds.end(), from);
+  // One that is let go where its tangent is not definite, and one that rests in a second stable equilibrium.
+  if (first == nullptr) seeds.insert(seeds.end(), {259, 156});
+  for (const int seed : seeds) {
     LivePull(static_cast<std::uint64_t>(seed)).run(tally);
     if (testing::Test::HasFatalFailure()) FAIL() << "seed " << seed;
   }
   test::measured("{} live pulls, {} advances in {} ticks, {} late, {} cuts refused, least J {:.3f}", tally.pulls,
                  tally.advances, tally.ticks, tally.late, tally.refused, tally.least_J);
   test::measured(
-      "{} held and {} released against the full solve ({} of them not converged): force {:.1e}, place {:.1e}",
-      tally.held, tally.released, tally.no_oracle, tally.worst_force, tally.worst_place);
+      "{} held and {} released against the full solve ({} of them not converged): force {:.1e}, place {:.1e}; {} "
+      "released at rest elsewhere than from the undeformed body",
+      tally.held, tally.released, tally.no_oracle, tally.worst_force, tally.worst_place, tally.others);
   EXPECT_GT(tally.advances, count);  // the sweep tears, it does not only pull
   EXPECT_GT(tally.released, count / 2);
 }

@@ -9,6 +9,8 @@
 #include <memory>
 #include <vector>
 
+#include <Eigen/Cholesky>
+
 #include "response/torn_model.h"
 #include "solver/equilibrium.h"
 
@@ -34,11 +36,30 @@ class FullSolve {
     return out;
   }
   [[nodiscard]] model::State at_rest() const { return model_->initial_state(); }
+  /// With the lambdas that go with these displacements, C lambda = g(u).
+  [[nodiscard]] model::State state_at(const VectorX& u) const {
+    model::State out{u, VectorX::Zero(model_->pressure_unknowns())};
+    if (out.lambda.size() == 0) return out;
+    const auto scratch = model_->make_scratch();
+    linalg::SaddleMatrix K = model_->make_tangent();
+    model::Residual residual{VectorX::Zero(u.size()), out.lambda};
+    model_->residual(out, *scratch, residual);
+    model_->tangent(out, *scratch, K);
+    Eigen::MatrixXd C(out.lambda.size(), out.lambda.size());
+    VectorX column(out.lambda.size());
+    for (Eigen::Index j = 0; j < C.cols(); ++j) {
+      K.C.multiply(VectorX::Unit(C.cols(), j), column);
+      C.col(j) = column;
+    }
+    out.lambda = C.llt().solve(residual.lambda);
+    return out;
+  }
 
   struct Held {
     model::State state;
     Vec3 force = Vec3::Zero();  ///< N, of the hand on the body
     bool converged = false;
+    bool stable = false;  ///< no direction in which the energy falls
   };
   /// With a node at `hand` (m), from `near` in one step, or from rest in ten.
   [[nodiscard]] Held held(NodeId node, const Vec3& hand, model::State near, int steps = 1) const {
@@ -49,6 +70,7 @@ class FullSolve {
     Held out;
     const solver::Report report = solve(loading, near, steps);
     out.converged = report.converged();
+    out.stable = report.negative_pivots == 0;
     out.force = report.reaction.segment<3>(3 * Eigen::Index{node.value()});
     out.state = std::move(near);
     return out;
@@ -56,7 +78,9 @@ class FullSolve {
   /// Without a hand.
   [[nodiscard]] Held released(model::State near, int steps = 1) const {
     Held out;
-    out.converged = solve(loading_, near, steps).converged();
+    const solver::Report report = solve(loading_, near, steps);
+    out.converged = report.converged();
+    out.stable = report.negative_pivots == 0;
     out.state = std::move(near);
     return out;
   }
