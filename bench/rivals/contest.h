@@ -17,7 +17,7 @@ struct BulletEntry {
   BulletSettings settings;
   int moves = 1;
 };
-/// Those of all that `every` has which were the best at some size and error; with `every` all of them.
+/// Those that were the best at some size and error; with `every` all that was tried, these first.
 [[nodiscard]] std::vector<BulletEntry> bullet_entries(BulletLaw law, bool every);
 /// For a hand that moves on.
 [[nodiscard]] std::vector<BulletSettings> bullet_followers();
