@@ -1,6 +1,7 @@
 #include "bench/rivals/calculix.h"
 
 #include <array>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
