@@ -22,7 +22,8 @@ struct BulletEntry {
 /// For a hand that moves on.
 [[nodiscard]] std::vector<BulletSettings> bullet_followers();
 
-/// Tables as arrays of flat objects; times in ms, an error or a time that was not reached is null.
+/// Tables as arrays of flat objects; times in ms. Null: an error or a time that was not reached, by Bullet before it
+/// was longer than the best so far.
 struct ContestTables {
   nlohmann::ordered_json rest = nlohmann::ordered_json::array();
   nlohmann::ordered_json moving = nlohmann::ordered_json::array();
