@@ -16,7 +16,7 @@ sources = git ls-files --cached --others --exclude-standard '*.h' '*.cpp'
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:
-.PHONY: build viewer play demo test test-viewer e2e check-floors check-format format fuzz asan tsan tidy bench clean help
+.PHONY: build viewer play demo test test-viewer e2e check-floors check-format format fuzz asan tsan tidy bench rivals clean help
 
 build: ## the program: build/release/bin/rhexis
 	@tools/install build
@@ -83,6 +83,11 @@ tidy: ## clang-tidy with the naming rules over src
 bench: ## the benchmarks; ARGS='--benchmark_filter=...' chooses
 	@$(call build_preset,release,rhexis_bench)
 	@build/release/bin/rhexis_bench $(ARGS)
+
+rivals: ## bars beside Bullet and CalculiX, which it installs: tables, and out/rivals.json; ARGS=--help says what can be chosen
+	@tools/install rivals
+	@$(call build_preset,release,rhexis_rivals)
+	@mkdir -p out && build/release/bin/rhexis_rivals --out out/rivals.json $(ARGS)
 
 clean: ## remove what was built and made
 	@rm -rf build out

@@ -8,13 +8,13 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <ctime>
 #include <functional>
 #include <memory>
 #include <vector>
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "bench/processor_watch.h"
 #include "bench/response_pull.h"
 #include "bench/response_rivals.h"
 #include "response/contact.h"
@@ -28,17 +28,6 @@ namespace {
 using namespace rhexis;                   // NOLINT
 using namespace rhexis::response;         // NOLINT
 using namespace rhexis::response::bench;  // NOLINT
-
-/// Seconds of the processor since construction, all threads together.
-class ProcessorWatch {
- public:
-  [[nodiscard]] double seconds() const {
-    return static_cast<double>(std::clock() - start_) / static_cast<double>(CLOCKS_PER_SEC);
-  }
-
- private:
-  std::clock_t start_ = std::clock();
-};
 
 /// One way: what it has to set up, and what it does after each edit that `body` has taken.
 struct Way {

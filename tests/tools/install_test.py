@@ -78,6 +78,11 @@ class Install(unittest.TestCase):
     def test_testing_needs_a_browser(self):
         self.assertEqual(self.run_install("test", missing="chromium")[3][1].split()[-1], "chromium")
 
+    def test_only_the_comparison_needs_the_rivals(self):
+        missing = "libbullet-dev calculix-ccx"
+        self.assertEqual(self.run_install("test", missing=missing)[3], [])
+        self.assertEqual(self.run_install("rivals", missing=missing)[3][1].split()[-2:], missing.split())
+
     def test_names_a_package_that_apt_does_not_know(self):
         code, _, err, calls = self.run_install("build", missing="cmake libtbb-dev", unknown="libtbb-dev")
         self.assertEqual(code, 1)
