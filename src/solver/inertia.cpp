@@ -50,6 +50,7 @@ void Inertia::follow(const model::Model& model, const std::vector<std::int32_t>&
   motion_.u = after;
   motion_.u.head(before.size()) -= moved;
   motion_.velocity.conservativeResize(after.size());
+  motion_.internal.setZero(after.size());
   for (std::size_t i = 0; i < copied.size(); ++i) {
     const Eigen::Index parent = 3 * Eigen::Index{copied[i]};
     const Eigen::Index copy = 3 * (nodes + static_cast<Eigen::Index>(i));

@@ -225,7 +225,7 @@ TEST_P(LiveResponseOf, ATearKeepsMassAndMomentum) {
   EXPECT_NEAR(response->inertia().mass().sum(), mass, 1e-13 * mass);
   // Nodes that the incision moves in the reference configuration keep their velocity and take other shares of mass.
   EXPECT_LE((momentum() - before).norm(), 0.02 * before.norm());
-  EXPECT_GT(before.norm(), 1e-2 * mass);
+  EXPECT_GT(before.norm(), 1e-3 * mass);
 }
 
 TEST_P(LiveResponseOf, UndoBringsTheMotionBackToo) {

@@ -157,10 +157,10 @@ TEST(TearProblem, DynamicsAreOfABodyOfLargeStrainThatHasAMass) {
   const std::string weightless = replaced(corotated, "gravity = [0.0, 0.0, -9.81]", "");
   const std::vector<std::pair<std::string, std::string>> table{
       {moving,
-       "s.toml:19: dynamics are of a body of large strain, not of model 'linear' (kind = \"corotated\", "
+       "s.toml:20: dynamics are of a body of large strain, not of model 'linear' (kind = \"corotated\", "
        "\"geometrically-nonlinear\" or \"hyperelastic\")"},
       {replaced(weightless, "density = 1000.0", ""),
-       "s.toml:19: dynamics need a mass, and 'material.density' is 0 (a density in kg/m3, more than 0)"}};
+       "s.toml:20: dynamics need a mass, and 'material.density' is 0 (a density in kg/m3, more than 0)"}};
   for (const auto& [text, message] : table) {
     const Expected<Scene> scene = parse_scene(text, "s.toml");
     ASSERT_TRUE(scene.has_value()) << scene.error().message();
