@@ -54,6 +54,7 @@ class Script {
   Expected<std::string> tick(const Vec3& hand, Progress& progress) {
     const double time = 1e-3 * ++tick_;
     Expected<void> written;
+    tear_.pass(1e-3);
     const session::TickReport report = tear_.tick(hand, [&](const session::AdvanceRecord& advance) {
       if (written) written = output_.write_topology(tear_, time);
       output_.note_force(advance.force_before);

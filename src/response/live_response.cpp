@@ -19,6 +19,10 @@ namespace {
 /// Of the body's size: the way of a frame of what is let go, and where it is as good as free.
 constexpr double kLongestStep = 0.03;
 constexpr double kFree = 1e-3;
+/// Time steps that a body may be behind: more is not made up for.
+constexpr double kMostOwed = 2.0;
+/// Two times that differ by less are the same, s.
+constexpr double kSameTime = 1e-9;
 /// Times that a body without a hand gives up before it begins again from rest.
 constexpr int kMostGivenUp = 2;
 
@@ -47,6 +51,7 @@ bool acts(const model::Loading& loading) {
 }  // namespace
 
 Expected<std::unique_ptr<LiveResponse>> LiveResponse::make(const mesh::TornMesh& mesh, LiveResponseSettings settings) {
+  if (settings.dynamics) settings.live = solver::moving(settings.live);
   std::unique_ptr<LiveResponse> out(new LiveResponse(mesh, std::move(settings)));
   out->make_model();
   Expected<model::State> state = out->equilibrium_from_rest();
@@ -80,7 +85,8 @@ Expected<model::State> LiveResponse::equilibrium_from_rest() const {
 
 void LiveResponse::make_live(model::State state) {
   model::Loading loading = make_torn_loading(mesh_, settings_.body, model_->space(), state.u);
-  live_ = std::make_unique<solver::LiveEquilibrium>(model_, std::move(loading), std::move(state), settings_.live);
+  live_ = std::make_unique<solver::LiveEquilibrium>(model_, std::move(loading), std::move(state), settings_.live,
+                                                    settings_.dynamics);
 }
 
 void LiveResponse::make_model() {
@@ -90,7 +96,13 @@ void LiveResponse::make_model() {
 
 void LiveResponse::grasp(std::span<const NodeId> nodes) {
   RHEXIS_CHECK(nodes.empty(), "{} nodes, and no point", nodes.size());
-  if (live_->holds() && point_) leaving_ = point_;
+  if (live_->holds() && point_) {
+    if (settings_.dynamics) {
+      live_->let_go();
+    } else {
+      leaving_ = point_;
+    }
+  }
   point_.reset();
   update_contact();
 }
@@ -165,8 +177,19 @@ Vec3 LiveResponse::released() const {
   return live_->point() - way;
 }
 
+void LiveResponse::pass(double seconds) {
+  if (settings_.dynamics) owed_ = std::min(owed_ + seconds, kMostOwed * settings_.dynamics->step);
+}
+
+/// Once its time has come, and the step before has ended.
+void LiveResponse::begin_step() {
+  if (settings_.dynamics && owed_ > settings_.dynamics->step - kSameTime && live_->begin_step())
+    owed_ -= settings_.dynamics->step;
+}
+
 MoveReport LiveResponse::move(const Vec3& hand) {
   MoveReport out;
+  begin_step();
   for (int k = 0; k < settings_.frames; ++k) {
     solver::LiveFrame frame;
     double tolerance = settings_.live.tolerance;
@@ -185,8 +208,8 @@ MoveReport LiveResponse::move(const Vec3& hand) {
       given_up_ = frame.gave_up ? given_up_ + 1 : given_up_;
       if (given_up_ == kMostGivenUp) begin_again();
     }
-    out.at_rest =
-        frame.reached && frame.corrections == 0 && frame.linear_iterations == 0 && frame.residual <= tolerance;
+    out.at_rest = frame.reached && frame.corrections == 0 && frame.linear_iterations == 0 &&
+                  frame.residual <= tolerance && !live_->moves();
     if (out.at_rest) given_up_ = 0;
     out.late = frame.trouble;
     if (out.at_rest || is_stuck(frame)) break;
@@ -223,7 +246,8 @@ FollowReport LiveResponse::follow(const mesh::MeshEdit& edit, std::span<const Fo
     report.why = "the cut would turn a tet inside out in the deformed body";
     return report;
   }
-  before_.push_back({this->state(), point_ ? point_ : leaving_});
+  before_.push_back(
+      {this->state(), point_ ? point_ : leaving_, settings_.dynamics ? inertia().motion() : solver::Motion{}});
   linalg::ElementChange change;
   add_applied(mesh_, edit, change);
   make_model();
@@ -247,10 +271,11 @@ void LiveResponse::go_back(const mesh::MeshEdit& /*edit*/, std::span<const Focus
   before_.pop_back();
   make_model();
   make_live(std::move(before.state));
+  if (settings_.dynamics) live_->set_motion(std::move(before.motion));
   leaving_.reset();
   if (point_) {
     take_hold();
-  } else if (before.point) {  // the hand is not there any more
+  } else if (before.point && !settings_.dynamics) {  // the hand is not there any more
     point_ = before.point;
     take_hold();
     if (live_->holds()) leaving_ = point_;
@@ -281,7 +306,8 @@ double LiveResponse::stored_energy(const VectorX& /*held_forces*/) { return pote
 std::size_t LiveResponse::memory_bytes() const {
   std::size_t bytes = live_->memory_bytes();
   for (const Before& before : before_)
-    bytes += sizeof(double) * static_cast<std::size_t>(before.state.u.size() + before.state.lambda.size());
+    bytes += sizeof(double) *
+             static_cast<std::size_t>(before.state.u.size() + before.state.lambda.size() + 3 * before.motion.u.size());
   return bytes;
 }
 

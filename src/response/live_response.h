@@ -3,7 +3,9 @@
 /// The answer of a body of large strain (`corotated`, `geometrically-nonlinear`, `hyperelastic`) that is led by a hand
 /// and torn: one state, kept near equilibrium by warm Newton corrections (solver/live_equilibrium.h), carried on when a
 /// crack runs through its reference configuration (carried_state.h). Between moves the contact answers by the tangent.
-/// No clock: what is made beside the caller is taken up by counts, the same bits from run to run.
+/// No clock: what is made beside the caller is taken up by counts, the same bits from run to run. A body with mass
+/// moves in steps of fixed length as time passes, one a move at most: where moves take longer it moves slower than
+/// life.
 
 #include <memory>
 #include <vector>
@@ -18,9 +20,11 @@ namespace rhexis::response {
 
 struct LiveResponseSettings {
   LiveBody body;
-  solver::LiveOptions live;  ///< of a frame
-  int frames = 1;            ///< of a move at most: one for a hand that does not wait, many for a script that may
-  solver::Options solver;    ///< by which the equilibrium under the loads alone is found, from which it starts
+  solver::LiveOptions live = {};  ///< of a frame
+  int frames = 1;                 ///< of a move at most: one for a hand that does not wait, many for a script that may
+  solver::Options solver = {};    ///< by which the equilibrium under the loads alone is found, from which it starts
+  std::optional<solver::Dynamics> dynamics =
+      std::nullopt;  ///< empty: it has no mass, and is where it is in equilibrium
 };
 
 class LiveResponse final : public Response {
@@ -33,6 +37,7 @@ class LiveResponse final : public Response {
   void hold(const SurfacePoint& point, ContactMode mode) override;
   /// A body of large strain is held at a point: none is the only set of nodes that it takes.
   void grasp(std::span<const NodeId> nodes) override;
+  void pass(double seconds) override;
   MoveReport move(const Vec3& hand) override;
   [[nodiscard]] bool is_linear() const override { return false; }
   [[nodiscard]] const VectorX& rest() const override { return rest_; }
@@ -53,6 +58,8 @@ class LiveResponse final : public Response {
 
   [[nodiscard]] const model::State& state() const { return live_->state(); }
   [[nodiscard]] double residual() const { return live_->residual(); }  ///< relative
+  /// Of a body with mass: RHEXIS_CHECK.
+  [[nodiscard]] const solver::Inertia& inertia() const { return live_->inertia(); }
 
  private:
   LiveResponse(const mesh::TornMesh& mesh, LiveResponseSettings settings)
@@ -65,6 +72,7 @@ class LiveResponse final : public Response {
   [[nodiscard]] Vec3 released() const;
   [[nodiscard]] Expected<model::State> equilibrium_from_rest() const;
   void begin_again();
+  void begin_step();
   void update_contact();
   [[nodiscard]] Vec3 target(const Vec3& hand) const;
   [[nodiscard]] double potential_energy() const;
@@ -74,10 +82,11 @@ class LiveResponse final : public Response {
   std::vector<std::uint8_t> left_out_;  ///< per tet
   std::shared_ptr<const model::Model> model_;
   std::unique_ptr<solver::LiveEquilibrium> live_;
-  /// Of each edit that was followed: the state in which it was made, and by what it was held.
+  /// Of each edit that was followed: the state in which it was made, by what it was held, and how it moved.
   struct Before {
     model::State state;
     std::optional<SurfacePoint> point;
+    solver::Motion motion;  ///< empty of a body without mass
   };
   std::vector<Before> before_;
   double energy_at_first_ = 0.0;
@@ -86,6 +95,7 @@ class LiveResponse final : public Response {
   std::optional<SurfacePoint> leaving_;  ///< that it held: led to where no force is, and only then let go
   double size_ = 0.0;                    ///< m, of the body
   int given_up_ = 0;                     ///< frames without a hand that gave up, in a row
+  double owed_ = 0.0;                    ///< s, that have passed and that the body has not moved by
   ContactMode mode_ = ContactMode::hold;
   bool supported_ = false;  ///< the point: nothing holds it then
   Eigen::MatrixXd compliance_;

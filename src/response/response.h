@@ -87,6 +87,8 @@ class Response {
   virtual void hold(const SurfacePoint& point, ContactMode /*mode*/) {
     grasp({point.node.data(), static_cast<std::size_t>(point.count)});
   }
+  /// Time goes on, s: a body with mass moves by it in the moves that follow.
+  virtual void pass(double /*seconds*/) {}
   /// The point is to be at `hand` (m, displacement from its reference position), or the body at rest without a hand.
   virtual MoveReport move(const Vec3& /*hand*/) { return {}; }
   /// False: displacement and energy are those of the state of the last move, whatever the forces; with loads as they

@@ -292,6 +292,34 @@ Section solver() {
           }};
 }
 
+Section dynamics() {
+  return {.name = "dynamics",
+          .doc =
+              "Gives a body of large strain that is held and torn its mass, `material.density`: let go, or torn, it "
+              "swings, see docs/soft-tearing.md. Without this section it is always where it is in equilibrium. Not "
+              "read by `rhexis solve`.",
+          .keys = {
+              {.name = "step",
+               .kind = Kind::number,
+               .unit = "s",
+               .range = within(1e-3, 1.0),
+               .fallback = "0.016",
+               .doc = "The time step, one a frame of the physics. Long ones take more out of fast motion."},
+              {.name = "mass_damping",
+               .kind = Kind::number,
+               .unit = "1/s",
+               .range = within(0.0, 1e6),
+               .fallback = "0.0",
+               .doc = "Rayleigh's factor of the mass: a resistance to all motion."},
+              {.name = "stiffness_damping",
+               .kind = Kind::number,
+               .unit = "s",
+               .range = within(0.0, 1e3),
+               .fallback = "0.0",
+               .doc = "Rayleigh's factor of the stiffness: a resistance to deforming."},
+          }};
+}
+
 Section fracture() {
   return {.name = "fracture",
           .exactly_one = {"strength", "toughness"},
@@ -476,9 +504,9 @@ Section record() {
 }  // namespace
 
 std::span<const Section> scene_sections() {
-  static const std::vector<Section> sections{root(),    mesh(),     sets(),        material(), model(),
-                                             support(), traction(), pressure(),    solver(),   fracture(),
-                                             crack(),   record(),   interaction(), pull()};
+  static const std::vector<Section> sections{root(),     mesh(),     sets(),     material(),    model(),
+                                             support(),  traction(), pressure(), solver(),      dynamics(),
+                                             fracture(), crack(),    record(),   interaction(), pull()};
   return sections;
 }
 

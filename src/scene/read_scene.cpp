@@ -41,6 +41,13 @@ SolverSettings read_solver(const SectionValues& values) {
   return settings;
 }
 
+DynamicsSettings read_dynamics(const SectionValues& values) {
+  return {.step = values.get<double>("step"),
+          .mass_damping = values.get<double>("mass_damping"),
+          .stiffness_damping = values.get<double>("stiffness_damping"),
+          .place = values.place};
+}
+
 PullSettings read_pull(const SectionValues& values) {
   return {values.get<Vec3>("at"),
           values.get<Vec3>("by"),
@@ -76,6 +83,7 @@ Expected<Scene> settings_of(const Values& values, const std::string& file) {
   scene.gravity = values.one("").get<Vec3>("gravity");
   scene.model = read_model_section(values.one("model"), scene);
   scene.solver = read_solver(values.one("solver"));
+  if (values.one("dynamics").given) scene.dynamics = read_dynamics(values.one("dynamics"));
   for (const SectionValues& set : values.all("sets")) scene.sets.push_back(read_set(set));
   for (const SectionValues& entry : values.all("traction"))
     scene.tractions.push_back({read_faces(entry), entry.get<Vec3>("force")});

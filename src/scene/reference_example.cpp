@@ -50,7 +50,9 @@ value = 1.0e4                             # Pa, against the outward normal
 steps = 10
 tolerance = 1e-8
 
-[fracture]                                # from here on: for tearing
+[dynamics]                                # from here on: for holding and tearing
+stiffness_damping = 0.005                 # s
+[fracture]
 criterion = "maximum-principal"
 strength = 0.4e6                          # Pa
 [[crack]]

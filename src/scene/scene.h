@@ -100,6 +100,13 @@ struct SolverSettings {
   int threads = 0;  ///< 0: all cores
 };
 
+struct DynamicsSettings {
+  double step = 0.0;               ///< s
+  double mass_damping = 0.0;       ///< 1/s
+  double stiffness_damping = 0.0;  ///< s
+  Place place;
+};
+
 struct FractureSettings {
   std::optional<std::string> criterion;     ///< empty: by the body
   std::optional<double> strength;           ///< Pa; this or toughness
@@ -147,6 +154,7 @@ struct Scene {
   std::vector<TractionSettings> tractions;
   std::vector<PressureSettings> pressures;
   SolverSettings solver;
+  std::optional<DynamicsSettings> dynamics;
   std::optional<FractureSettings> fracture;
   std::vector<CrackSettings> cracks;
   RecordSettings record;

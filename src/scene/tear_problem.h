@@ -9,6 +9,7 @@
 #include "mesh/tet_mesh.h"
 #include "response/torn_model.h"
 #include "scene/scene.h"
+#include "solver/inertia.h"
 #include "solver/options.h"
 
 namespace rhexis::scene {
@@ -20,6 +21,7 @@ struct TearProblem {
   model::ModelSettings model = {};                   ///< with anything but `linear` the body is one of large strain
   std::vector<response::SurfacePressure> pressures;  ///< of such a body
   solver::Options solver;                            ///< the same: for its equilibrium under the loads alone
+  std::optional<solver::Dynamics> dynamics = std::nullopt;  ///< of such a body; empty: without mass
   FractureSettings fracture;
   bool tears = true;  ///< false: the scene does not say when, and `fracture` is empty
   std::vector<CrackSettings> cracks;
@@ -44,7 +46,7 @@ enum class Puller { script, hand, record };
 /// `[fracture]`, no `[[pull]]`; for a record, and whoever asks for `response = "recorded"`, other than one `[[crack]]`,
 /// another incision than `keep-nodes`, more topologies than a record may have, a model other than `linear`, a pressure;
 /// for a script `mass-spring` or `taylor-hood`, a pressure on a `linear` body; for all of them a toughness, or blended
-/// contact, of a body of large strain.
+/// contact, of a body of large strain, and dynamics of one of small strains, or without a density.
 [[nodiscard]] Expected<TearProblem> build_tear_problem(const Scene& scene, Puller puller = Puller::script);
 
 }  // namespace rhexis::scene

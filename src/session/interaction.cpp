@@ -30,6 +30,7 @@ StepOutcome Interaction::step(const haptics::HandState& hand, bool fresh) {
   follow_script(passed);
   now_ += passed;
   if (runs()) {
+    tear().pass(1e-3 * static_cast<double>(passed));
     const bool stands_still = tearing_ > 0 && tearing_ < kMostAdvancesPerTick;
     if (follows && hand.grasp == grasps_ && tear().hand().holds() && !stands_still) {
       settled_ = settled_ && vector_of(hand.hand) == by_;

@@ -21,6 +21,7 @@ TearSettings settings_of(const scene::TearProblem& problem, response::SharedReco
       .pressures = problem.pressures,
       .solver = problem.solver,
       .live = live,
+      .dynamics = problem.dynamics,
       .frames = pace == Pace::waits ? kMostFrames : 1,
       .tears = problem.tears,
       .criterion = fracture.criterion.value_or(""),

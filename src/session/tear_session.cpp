@@ -59,7 +59,8 @@ Expected<std::unique_ptr<TearSession>> TearSession::make(const mesh::TetMesh& me
         response::LiveResponse::make(session->body(), {.body = {all.body, *all.large_strain, all.pressures},
                                                        .live = all.live,
                                                        .frames = all.frames,
-                                                       .solver = all.solver});
+                                                       .solver = all.solver,
+                                                       .dynamics = all.dynamics});
     if (!live) return fail(std::move(live.error()));
     session->response_ = std::move(*live);
   } else {

@@ -50,6 +50,8 @@ class TearSession {
   /// Takes hold of the surface point nearest to `at` (m, reference). Errors: as Hand::grasp.
   Expected<void> grasp(const Vec3& at, response::ContactMode mode = response::ContactMode::hold);
   void let_go();
+  /// Time goes on, s: a body with mass moves by it in the ticks that follow.
+  void pass(double seconds) { response_->pass(seconds); }
   /// One tick with the hand displaced by `hand` (m) from where it took hold. `most_advances`, at least 1: what is left
   /// then goes to the next tick; the same place of the hand again takes it up.
   TickReport tick(const Vec3& hand, const Observer& observer = {}, int most_advances = kMostAdvancesPerTick);

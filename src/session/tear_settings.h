@@ -21,10 +21,11 @@ struct TearSettings {
   response::ElasticBody body;
   /// Of large strain: any live model but `linear`; `body.elastic` is not read then. Empty: small strains.
   std::optional<model::ModelSettings> large_strain = std::nullopt;
-  std::vector<response::SurfacePressure> pressures = {};  ///< this and what follows is read with large strain
-  solver::Options solver = {};                            ///< how the equilibrium under the loads alone is found
-  solver::LiveOptions live = {};                          ///< of a frame
-  int frames = 1;                                         ///< of a tick at most
+  std::vector<response::SurfacePressure> pressures = {};    ///< this and what follows is read with large strain
+  solver::Options solver = {};                              ///< how the equilibrium under the loads alone is found
+  solver::LiveOptions live = {};                            ///< of a frame
+  std::optional<solver::Dynamics> dynamics = std::nullopt;  ///< empty: the body has no mass
+  int frames = 1;                                           ///< of a tick at most
   bool tears = true;      ///< false: it bends; what follows is not read, and its first cracks stay as they are
   std::string criterion;  ///< of fracture::kCriterionNames; empty: "maximum-principal" for a plate, else "maximum-hoop"
   std::optional<double> strength;   ///< Pa; this or toughness

@@ -40,17 +40,27 @@ constexpr int kLateIterations = 3;
 /// many more than when it was new, since the making takes a core.
 constexpr int kWornIterations = 4;
 constexpr int kWornMore = 2;
+/// Of the body's size: of a body with mass the residual is held against the force that moves it so far in a step.
+constexpr double kSmallStep = 1e-3;
 
 }  // namespace
 
+LiveOptions moving(LiveOptions options) {
+  options.corrections = 4;
+  options.forcing = 0.02;
+  options.iterations = 20;
+  return options;
+}
+
 LiveEquilibrium::LiveEquilibrium(std::shared_ptr<const model::Model> model, model::Loading loading, model::State state,
-                                 LiveOptions options)
+                                 LiveOptions options, const std::optional<Dynamics>& dynamics)
     : model_(std::move(model)),
       loading_(std::move(loading)),
       options_(options),
       free_(model::free_dofs(model_->space(), loading_)),
       state_(std::move(state)),
-      linear_(model_, free_, state_) {
+      inertia_(dynamics ? std::optional<Inertia>(std::in_place, *dynamics, *model_, state_.u) : std::nullopt),
+      linear_(model_, free_, state_, dynamics ? dynamics->density * inertia_->per_mass() : 0.0) {
   Eigen::AlignedBox3d box;
   for (const Vec3& x : model_->space().nodes) box.extend(x);
   size_of_body_ = box.diagonal().norm();
@@ -67,8 +77,13 @@ void LiveEquilibrium::make_room() {
   for (const model::PrescribedDof& support : loading_.supports) state_.u[support.dof] = support.value;
   trial_ = state_;
   now_ = evaluate(state_);
+  if (inertia_) {
+    inertia_->set_internal(internal_);
+    now_ = evaluate(state_);
+  }
   good_ = state_;
   idle_frames_ = 0;
+  waiting_ = 0;
   cautious_ = false;
 }
 
@@ -76,6 +91,7 @@ void LiveEquilibrium::follow(std::shared_ptr<const model::Model> model, model::L
                              const TornModel& torn) {
   model_ = std::move(model);
   loading_ = std::move(loading);
+  if (inertia_) inertia_->follow(*model_, torn.copied, state_.u, state.u);
   state_ = std::move(state);
   free_ = model::free_dofs(model_->space(), loading_);
   linear_.follow(model_, free_, state_, torn);
@@ -104,7 +120,8 @@ LiveEquilibrium::Trial LiveEquilibrium::evaluate(const model::State& state) {
   Trial out;
   out.evaluation = model_->residual(state, *scratch_, residual_);
   internal_ = residual_.u;
-  model::external_force(loading_, model_->space(), state.u, 1.0, external_);
+  model::external_force(loading_, model_->space(), state.u, 1.0 / scale(), external_);
+  if (inertia_) inertia_->add_force(state.u, external_);
   residual_.u -= external_;
   if (held_) {
     multiplier_ = held_->of(residual_.u) / held_->weight.squaredNorm();
@@ -114,8 +131,9 @@ LiveEquilibrium::Trial LiveEquilibrium::evaluate(const model::State& state) {
   double square = 0.0;
   for (const std::int32_t dof : free_.dof) square += residual_.u[dof] * residual_.u[dof];
   out.norm = std::sqrt(square);
-  const double scale = std::max({internal_.norm(), external_.norm(), small_force_});
-  out.relative = scale > 0.0 ? out.norm / scale : 0.0;
+  out.scale = std::max({internal_.norm(), external_.norm(), small_force_});
+  if (inertia_) out.scale = std::max(out.scale, inertia_->force_for(kSmallStep * size_of_body_));
+  out.relative = out.scale > 0.0 ? out.norm / out.scale : 0.0;
   return out;
 }
 
@@ -126,7 +144,8 @@ bool LiveEquilibrium::is_admissible(const Trial& trial) const {
 
 void LiveEquilibrium::build_tangent() {
   model_->tangent(state_, *scratch_, tangent_);
-  model::subtract_load_stiffness(loading_, model_->space(), state_.u, 1.0, tangent_);
+  model::subtract_load_stiffness(loading_, model_->space(), state_.u, 1.0 / scale(), tangent_);
+  if (inertia_) inertia_->add_tangent(tangent_);
   linear_.set_tangent(tangent_, state_);
 }
 
@@ -232,6 +251,37 @@ void LiveEquilibrium::let_go() {
   idle_frames_ = 0;
 }
 
+const Inertia& LiveEquilibrium::inertia() const {
+  RHEXIS_CHECK(inertia_, "a body without mass");
+  return *inertia_;
+}
+
+void LiveEquilibrium::set_motion(Motion motion) {
+  RHEXIS_CHECK(inertia_ && motion.u.size() == state_.u.size(), "another body");
+  inertia_->set_motion(std::move(motion));
+  now_ = evaluate(state_);
+}
+
+bool LiveEquilibrium::moves() const {
+  return inertia_ && inertia_->momentum(state_.u) > wanted_residual() * now_.scale;
+}
+
+bool LiveEquilibrium::begin_step() {
+  RHEXIS_CHECK(inertia_, "a body without mass");
+  const bool ended = now_.relative <= options_.tolerance;
+  if (!ended && ++waiting_ <= kMostIdleFrames) return false;
+  now_ = evaluate(state_);  // whose internal force it needs
+  if (ended) {
+    inertia_->begin(state_.u, internal_);
+  } else {
+    inertia_->halt(state_.u, internal_);
+  }
+  now_ = evaluate(state_);
+  waiting_ = 0;
+  begun_ = true;
+  return true;
+}
+
 LiveFrame LiveEquilibrium::step(const Vec3& hand) {
   RHEXIS_CHECK(holds(), "no point is held");
   return advance(&hand);
@@ -290,7 +340,7 @@ bool LiveEquilibrium::correct(LiveFrame& frame) {
         linear_.solve(LiveLinear::Point::fixed, rhs_u_, rhs_lambda_, options_.forcing, most, careful, du_, dlambda_);
     frame.linear_iterations += solve.iterations;
     if (iterations_when_new_ == 0) iterations_when_new_ = std::max(1, solve.iterations);
-    const bool has_haste = held_ && now_.relative <= options_.late;
+    const bool has_haste = inertia_ || (held_ && now_.relative <= options_.late);
     const int worn_from = has_haste ? iterations_when_new_ + kWornMore : kWornIterations;
     worn_ = worn_ || solve.iterations >= worn_from || solve.truncated;
     if (take_correction(solve.truncated)) {
@@ -367,6 +417,10 @@ void LiveEquilibrium::keep_good(LiveFrame& frame) {
   } else if (++idle_frames_ > kMostIdleFrames) {
     state_ = good_;
     now_ = evaluate(state_);
+    if (inertia_) {
+      inertia_->halt(state_.u, internal_);
+      now_ = evaluate(state_);
+    }
     idle_frames_ = 0;
     cautious_ = !cautious_;
     worn_ = frame.gave_up = true;
@@ -381,14 +435,14 @@ LiveFrame LiveEquilibrium::advance(const Vec3* hand) {
   if (frame.refreshed) iterations_when_new_ = 0;
   std::optional<OneThreadHere> beside;  // the refresh, which has a core of its own
   if (linear_.is_refreshing()) beside.emplace();
-  frame.reached = hand == nullptr || now_.relative <= options_.late;
+  frame.reached = hand == nullptr || now_.relative <= options_.late || begun_;
+  begun_ = false;
   if (hand != nullptr && frame.reached && !follow(*hand, frame)) {
     frame.residual = now_.relative;
     return frame;
   }
-  const int most = now_.relative > options_.late ? kLateCorrections : options_.corrections;
-  const double tolerance = held_ ? options_.tolerance : std::min(options_.tolerance, options_.at_rest);
-  while (frame.corrections < most && now_.relative > tolerance) {
+  const int most = std::max(now_.relative > options_.late ? kLateCorrections : 0, options_.corrections);
+  while (frame.corrections < most && now_.relative > wanted_residual()) {
     if (correct(frame)) continue;
     frame.gave_up = !held_ && frame.corrections == 0;  // nothing else will move it
     break;

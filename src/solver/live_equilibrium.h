@@ -10,7 +10,12 @@
 /// Z = K^-1 N^T, the answer of the last tangent to the hand, is kept. It gives the compliance C = N Z that serves the
 /// haptic loop between frames, a first guess of the next state for nothing (u + Z C^-1 (d - N u)), and the force of a
 /// state that has not converged, right to second order in what is left of the residual: f + C^-1 Z^T r.
+///
+/// A body with mass is in equilibrium with its inertia too (solver/inertia.h): the frames between two `begin_step`
+/// bring it to the end of one time step, and the next one begins only from there. A step that takes more frames is
+/// late, and adds no energy.
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -18,6 +23,7 @@
 
 #include "model/loading.h"
 #include "model/model.h"
+#include "solver/inertia.h"
 #include "solver/live_linear.h"
 
 namespace rhexis::solver {
@@ -43,11 +49,15 @@ struct LiveFrame {
   std::string trouble;     ///< one line, empty when there was none
 };
 
+/// Of a body that moves a frame may end a time step, which takes more of it than to follow a hand does.
+[[nodiscard]] LiveOptions moving(LiveOptions options);
+
 class LiveEquilibrium {
  public:
-  /// `loading` counts at t = 1. Starts from `state`, with the supports where they are to be.
+  /// `loading` counts at t = 1. Starts from `state`, with the supports where they are to be. With `dynamics` it has
+  /// mass, and starts at rest.
   LiveEquilibrium(std::shared_ptr<const model::Model> model, model::Loading loading, model::State state,
-                  LiveOptions options);
+                  LiveOptions options, const std::optional<Dynamics>& dynamics = std::nullopt);
 
   /// The body has torn: another model and loading of it, of the same tets and more nodes, that starts from `state`,
   /// which has to be admissible. What the hand holds it goes on holding; the caller lets go what has come off.
@@ -66,6 +76,16 @@ class LiveEquilibrium {
   /// One frame without a hand.
   LiveFrame settle();
 
+  /// The next time step of a body with mass begins. False: the one under way has not ended yet, and goes on; after many
+  /// such calls the motion is taken out of the body, and the next one begins from there.
+  bool begin_step();
+  /// It would go on moving: `at_rest` and `tolerance` say what counts as none.
+  [[nodiscard]] bool moves() const;
+  /// Of a body with mass: RHEXIS_CHECK.
+  [[nodiscard]] const Inertia& inertia() const;
+  /// Goes on as a body of this state once did.
+  void set_motion(Motion motion);
+
   [[nodiscard]] const model::State& state() const { return state_; }
   [[nodiscard]] const model::Loading& loading() const { return loading_; }
   /// Of the residual to the forces, as LiveFrame has it.
@@ -74,18 +94,23 @@ class LiveEquilibrium {
   /// Displacement of the held point, m.
   [[nodiscard]] Vec3 point() const;
   /// Of the hand on the body, N, right to second order.
-  [[nodiscard]] const Vec3& force() const { return force_; }
-  /// Of the point at the last tangent, m/N, symmetric.
-  [[nodiscard]] const Mat3& compliance() const { return compliance_; }
+  [[nodiscard]] Vec3 force() const { return scale() * force_; }
+  /// Of the point at the last tangent, m/N, symmetric; with mass within a time step.
+  [[nodiscard]] Mat3 compliance() const { return compliance_ / scale(); }
   /// Its inverse, N/m: between frames the hand at d feels force() + stiffness() (d - point()).
-  [[nodiscard]] const Mat3& stiffness() const { return stiffness_; }
+  [[nodiscard]] Mat3 stiffness() const { return scale() * stiffness_; }
 
  private:
   struct Trial {
     model::Evaluation evaluation;
     double norm = 0.0;  ///< N, of the residual on the free dofs
     double relative = 0.0;
+    double scale = 0.0;  ///< N, that it is relative to
   };
+  [[nodiscard]] double scale() const { return inertia_ ? inertia_->scale() : 1.0; }
+  [[nodiscard]] double wanted_residual() const {
+    return held_ ? options_.tolerance : std::min(options_.tolerance, options_.at_rest);
+  }
   void make_room();
   LiveFrame advance(const Vec3* hand);
   bool follow(const Vec3& hand, LiveFrame& frame);
@@ -110,6 +135,7 @@ class LiveEquilibrium {
   linalg::FreeDofs free_;
   std::unique_ptr<model::Scratch> scratch_;
   model::State state_;
+  std::optional<Inertia> inertia_;
   linalg::SaddleMatrix tangent_;
   linalg::SaddleResidual size_;
   LiveLinear linear_;
@@ -135,6 +161,8 @@ class LiveEquilibrium {
   bool cautious_ = false;        ///< since it gave up: no step that lets the residual grow
   bool worn_ = false;            ///< the frame has found the preconditioner wanting
   int iterations_when_new_ = 0;  ///< of the first correction with it; 0: there was none
+  bool begun_ = false;           ///< a time step, since the last frame
+  int waiting_ = 0;              ///< calls of begin_step that the one under way has turned down
   double size_of_body_ = 0.0;    ///< m
   double small_force_ = 0.0;     ///< N, the least since it took hold
   VectorX du_, dlambda_, rhs_u_, rhs_lambda_;

@@ -10,6 +10,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "solver/inertia.h"
 
 namespace rhexis::solver {
 namespace {
@@ -28,7 +29,9 @@ constexpr double kFlat = 0.1;
 /// The tangents of the tets, with their pressures eliminated by D, each at the state of its last look.
 class TetTangents final : public linalg::ElementSource {
  public:
-  TetTangents(const model::Model& model, const linalg::FreeDofs& free, const model::State& state) {
+  /// `inertia`: of the mass, N/m per volume.
+  TetTangents(const model::Model& model, const linalg::FreeDofs& free, const model::State& state, double inertia)
+      : inertia_(inertia) {
     const auto scratch = model.make_scratch();
     model.tet_tangents(state, *scratch, blocks_, coupling_);
     take_nodes(model, free);
@@ -79,6 +82,7 @@ class TetTangents final : public linalg::ElementSource {
       const Eigen::Map<const linalg::ElementVector> b(coupling_.data() + 12 * static_cast<std::size_t>(tet));
       out.noalias() += b * b.transpose() / d_[tet];
     }
+    if (!mass_.empty()) out.diagonal().array() += 0.25 * mass_[static_cast<std::size_t>(tet)];
     if (shift_ > 0.0) out.diagonal().array() += shift_ * out.diagonal().cwiseAbs().mean();
   }
   void load(std::int32_t, linalg::ElementVector& out) const override { out.setZero(); }
@@ -104,6 +108,7 @@ class TetTangents final : public linalg::ElementSource {
     left_out_.assign(out.begin(), out.end());
     free_.assign(model.space().node_count(), 0);
     for (const std::int32_t dof : free.dof) free_[static_cast<std::size_t>(dof / 3)] |= 1U << (dof % 3);
+    if (inertia_ > 0.0) mass_ = tet_masses(model, inertia_);
   }
 
   std::vector<double> blocks_, coupling_;
@@ -111,6 +116,8 @@ class TetTangents final : public linalg::ElementSource {
   std::vector<std::uint8_t> left_out_;  ///< per tet
   std::vector<unsigned> free_;          ///< per node
   VectorX d_;
+  double inertia_;
+  std::vector<double> mass_;  ///< per tet, of its mass on the tangent's diagonal, N/m; empty: it has none
   double shift_ = 0.0;
 };
 
@@ -166,20 +173,22 @@ struct LiveLinear::Preconditioner {
   }
 };
 
-LiveLinear::LiveLinear(std::shared_ptr<const model::Model> model, linalg::FreeDofs free, const model::State& state)
+LiveLinear::LiveLinear(std::shared_ptr<const model::Model> model, linalg::FreeDofs free, const model::State& state,
+                       double inertia)
     : model_(std::move(model)),
       free_(std::move(free)),
+      inertia_(inertia),
       c_inverse_(inverse_of_pressures(*model_)),
       rotations_(model_->space(), model_->left_out()) {
-  preconditioner_ = prepare(model_, free_, state, nullptr);
+  preconditioner_ = prepare(model_, free_, state, inertia_, nullptr);
 }
 
 LiveLinear::~LiveLinear() = default;
 
 LiveLinear::Prepared LiveLinear::prepare(const std::shared_ptr<const model::Model>& model, const linalg::FreeDofs& free,
-                                         const model::State& state, const Preconditioner* before) {
+                                         const model::State& state, double inertia, const Preconditioner* before) {
   auto out = std::make_shared<Preconditioner>(
-      Preconditioner{model, TetTangents(*model, free, state), nullptr, nullptr, {}, {}});
+      Preconditioner{model, TetTangents(*model, free, state, inertia), nullptr, nullptr, {}, {}});
   TetTangents& tets = out->tets;
   linalg::SaddleMatrix K = model->make_tangent();
   if (K.C.rows() > 0) {
@@ -238,7 +247,7 @@ void LiveLinear::follow(std::shared_ptr<const model::Model> model, linalg::FreeD
     state_then_ = state;
   }
   preconditioner_ = followed(*preconditioner_, state, torn);
-  if (!preconditioner_) preconditioner_ = prepare(model_, free_, state, nullptr);
+  if (!preconditioner_) preconditioner_ = prepare(model_, free_, state, inertia_, nullptr);
 }
 
 void LiveLinear::set_tangent(const linalg::SaddleMatrix& K, const model::State& state) {
@@ -385,9 +394,9 @@ void LiveLinear::refresh(const model::State& state) {
   worked_ = 0;
   torn_since_ = {};
   ready_ = false;
-  task_.start([this, state, model = model_, free = free_, before = preconditioner_] {
+  task_.start([this, state, model = model_, free = free_, inertia = inertia_, before = preconditioner_] {
     const OneThreadHere beside;
-    refreshed_ = prepare(model, free, state, before.get());
+    refreshed_ = prepare(model, free, state, inertia, before.get());
     ready_ = true;
   });
 }

@@ -68,8 +68,9 @@ struct LiveSolve {
 
 class LiveLinear {
  public:
-  /// Prepares the preconditioner at `state`.
-  LiveLinear(std::shared_ptr<const model::Model> model, linalg::FreeDofs free, const model::State& state);
+  /// Prepares the preconditioner at `state`. `inertia`: what the mass of the tangent adds per volume, N/m^4.
+  LiveLinear(std::shared_ptr<const model::Model> model, linalg::FreeDofs free, const model::State& state,
+             double inertia = 0.0);
   ~LiveLinear();
 
   /// The body has torn: another model of it, of the same tets and more nodes, at `state`. The preconditioner follows
@@ -108,7 +109,7 @@ class LiveLinear {
   /// `before`: one of the same tets, whose order is taken and, where it is of the same model, what depends on C alone;
   /// null: none.
   [[nodiscard]] static Prepared prepare(const std::shared_ptr<const model::Model>& model, const linalg::FreeDofs& free,
-                                        const model::State& state, const Preconditioner* before);
+                                        const model::State& state, double inertia, const Preconditioner* before);
   /// After the body has torn, at a state of the present model. Null: it would not be definite.
   [[nodiscard]] Prepared followed(const Preconditioner& before, const model::State& state, const TornModel& torn) const;
   void invert_pressure(const VectorX& b, VectorX& x, bool careful);
@@ -120,6 +121,7 @@ class LiveLinear {
 
   std::shared_ptr<const model::Model> model_;
   linalg::FreeDofs free_;
+  double inertia_;
   linalg::ChebyshevInverse c_inverse_;
   const linalg::SaddleMatrix* K_ = nullptr;
   Prepared preconditioner_;

@@ -42,6 +42,16 @@ struct TornBar {
     EXPECT_TRUE(made.has_value()) << made.error().message();
     return std::move(*made);
   }
+  /// With mass, one frame a move.
+  std::unique_ptr<LiveResponse> moving() const {
+    Expected<std::unique_ptr<LiveResponse>> made = LiveResponse::make(
+        cut.body, {.body = body,
+                   .solver = {.tolerance = 1e-9, .steps = 2},
+                   .dynamics = solver::Dynamics{
+                       .density = body.body.density, .mass_damping = 1.0, .stiffness_damping = 0.002, .step = 0.016}});
+    EXPECT_TRUE(made.has_value()) << made.error().message();
+    return std::move(*made);
+  }
   /// The crack goes down by `depth` (m); the body takes it.
   mesh::MeshEdit step(double depth) {
     mesh::MeshEdit edit =
@@ -153,6 +163,110 @@ TEST_P(LiveResponseOf, UndoReturnsToTheBit) {
   EXPECT_EQ(response->state().u, before.u);
   EXPECT_EQ(response->state().lambda, before.lambda);
   EXPECT_GT(response->compliance().norm(), 0.0);  // what was held is held
+}
+
+/// Frames of a millisecond.
+void let_pass(LiveResponse& response, int frames, const Vec3& hand = Vec3::Zero()) {
+  for (int k = 0; k < frames; ++k) {
+    response.pass(1e-3);
+    response.move(hand);
+  }
+}
+
+TEST_P(LiveResponseOf, WithMassItIsLetGoTornAndSwingsToTheRestOfTheFullSolve) {
+  TornBar bar(GetParam());
+  const auto response = bar.moving();
+  response->hold(bar.end(), ContactMode::hold);
+  const Vec3 start = response->rest().head<3>();
+  for (int k = 1; k <= 200; ++k) let_pass(*response, 1, start + k / 200.0 * Vec3(0.0, 0.01, 0.02));
+  ASSERT_TRUE(response->follow(bar.step(0.015), {}).ok);
+  let_pass(*response, 50, start + Vec3(0.0, 0.01, 0.02));
+  response->grasp({});
+  EXPECT_EQ(response->compliance().size(), 0);
+  const Eigen::Index end = 3 * Eigen::Index{bar.end().node[0].value()} + 2;
+  double lowest = response->state().u[end];
+  double kinetic = 0.0;
+  int frames = 0;
+  for (MoveReport report{.at_rest = false}; !report.at_rest && frames < 20000; ++frames) {
+    response->pass(1e-3);
+    report = response->move(Vec3::Zero());
+    lowest = std::min(lowest, response->state().u[end]);
+    kinetic = std::max(kinetic, response->inertia().kinetic_energy(response->state().u));
+  }
+  EXPECT_LT(frames, 20000);
+  const FullSolve full(bar.cut.body, bar.body, response->state().u);
+  const FullSolve::Held exact = full.released(full.at_rest(), 4);
+  ASSERT_TRUE(exact.converged);
+  EXPECT_LE((response->state().u - exact.state.u).lpNorm<Eigen::Infinity>(), 1e-6 * 0.10);
+  EXPECT_LT(lowest, exact.state.u[end] - 1e-3);  // it swung through
+  EXPECT_GT(kinetic, 0.0);
+}
+
+TEST_P(LiveResponseOf, ATearKeepsMassAndMomentum) {
+  TornBar bar(GetParam());
+  const auto response = bar.moving();
+  response->hold(bar.end(), ContactMode::hold);
+  const Vec3 start = response->rest().head<3>();
+  for (int k = 1; k <= 100; ++k) let_pass(*response, 1, start + k / 100.0 * Vec3(0.0, 0.01, 0.02));
+  response->grasp({});
+  let_pass(*response, 100);
+  const auto momentum = [&] {
+    const solver::Inertia& inertia = response->inertia();
+    Vec3 sum = Vec3::Zero();
+    for (Eigen::Index i = 0; i < inertia.mass().size(); ++i)
+      sum += inertia.mass()[i] * inertia.motion().velocity.segment<3>(3 * i);
+    return sum;
+  };
+  const double mass = response->inertia().mass().sum();
+  const Vec3 before = momentum();
+  const mesh::MeshEdit edit = bar.step(0.015);
+  ASSERT_FALSE(edit.copied.empty());
+  ASSERT_TRUE(response->follow(edit, {}).ok);
+  EXPECT_NEAR(response->inertia().mass().sum(), mass, 1e-13 * mass);
+  // Nodes that the incision moves in the reference configuration keep their velocity and take other shares of mass.
+  EXPECT_LE((momentum() - before).norm(), 0.02 * before.norm());
+  EXPECT_GT(before.norm(), 1e-3 * mass);
+}
+
+TEST_P(LiveResponseOf, UndoBringsTheMotionBackToo) {
+  TornBar bar(GetParam());
+  const auto response = bar.moving();
+  const SurfacePoint point = bar.end();
+  response->hold(point, ContactMode::hold);
+  for (int k = 1; k <= 60; ++k) let_pass(*response, 1, Vec3(0.0, 0.0, 0.0003 * k));
+  const model::State before = response->state();
+  const VectorX velocity = response->inertia().motion().velocity;
+  const VectorX from = response->inertia().motion().u;
+  EXPECT_GT(velocity.norm(), 0.0);
+  const mesh::MeshEdit edit = bar.step(0.01);
+  ASSERT_TRUE(response->follow(edit, {}).ok);
+  let_pass(*response, 60, Vec3(0.0, 0.0, 0.02));
+  bar.cut.undo();
+  response->go_back(edit, {});
+  EXPECT_EQ(response->state().u, before.u);
+  EXPECT_EQ(response->inertia().motion().velocity, velocity);
+  EXPECT_EQ(response->inertia().motion().u, from);
+}
+
+TEST_P(LiveResponseOf, WithMassTheSameMovesGiveTheSameBitsWhateverTheThreads) {
+  std::vector<VectorX> state;
+  for (const int threads : {1, 2}) {
+    set_thread_count(threads);
+    TornBar bar(GetParam());
+    const auto response = bar.moving();
+    response->hold(bar.end(), ContactMode::hold);
+    for (int k = 1; k <= 120; ++k) {
+      let_pass(*response, 1, Vec3(0.0001 * k, 0.0, 0.00015 * k));
+      if (k % 40 == 0) {
+        ASSERT_TRUE(response->follow(bar.step(0.005), {}).ok);
+      }
+    }
+    response->grasp({});
+    let_pass(*response, 100);
+    state.push_back(response->state().u);
+  }
+  set_thread_count(0);
+  EXPECT_EQ(state[0], state[1]);
 }
 
 TEST_P(LiveResponseOf, TheSameMovesGiveTheSameBitsWhateverTheThreads) {

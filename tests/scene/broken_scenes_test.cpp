@@ -311,7 +311,7 @@ TEST(BrokenScene, HostileNestingIsRefused) {
   for (int i = 0; i < 1999; ++i) most += ".1a.1";
   EXPECT_EQ(message_of(most + " = 1"),
             "s.toml:1: unknown section '1' (known: mesh, sets, material, model, support, traction, pressure, solver, "
-            "fracture, crack, record, interaction, pull)");
+            "dynamics, fracture, crack, record, interaction, pull)");
 }
 
 TEST(BrokenScene, SizeIsBounded) {

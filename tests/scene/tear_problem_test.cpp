@@ -142,6 +142,36 @@ TEST(TearProblem, ABodyOfLargeStrainIsTakenAsItIsWithWhatFollowsItsSurface) {
   EXPECT_LT((sum - Vec3(-0.5, 0.0, 0.0)).norm(), 1e-14);  // the traction alone
 }
 
+TEST(TearProblem, DynamicsAreOfABodyOfLargeStrainThatHasAMass) {
+  const std::string moving = replaced(kPlate, "[fracture]", "[dynamics]\nstep = 0.01\nmass_damping = 2.0\n[fracture]");
+  const std::string corotated = replaced(moving, "\"linear\"", "\"corotated\"");
+  const Expected<TearProblem> problem = build(corotated);
+  ASSERT_TRUE(problem.has_value()) << problem.error().message();
+  ASSERT_TRUE(problem->dynamics);
+  EXPECT_EQ(problem->dynamics->density, 1000.0);
+  EXPECT_EQ(problem->dynamics->step, 0.01);
+  EXPECT_EQ(problem->dynamics->mass_damping, 2.0);
+  EXPECT_EQ(problem->dynamics->stiffness_damping, 0.0);
+  EXPECT_FALSE(build(kPlate)->dynamics);
+
+  const std::string weightless = replaced(corotated, "gravity = [0.0, 0.0, -9.81]", "");
+  const std::vector<std::pair<std::string, std::string>> table{
+      {moving,
+       "s.toml:20: dynamics are of a body of large strain, not of model 'linear' (kind = \"corotated\", "
+       "\"geometrically-nonlinear\" or \"hyperelastic\")"},
+      {replaced(weightless, "density = 1000.0", ""),
+       "s.toml:20: dynamics need a mass, and 'material.density' is 0 (a density in kg/m3, more than 0)"}};
+  for (const auto& [text, message] : table) {
+    const Expected<Scene> scene = parse_scene(text, "s.toml");
+    ASSERT_TRUE(scene.has_value()) << scene.error().message();
+    for (const Puller puller : {Puller::script, Puller::hand}) {
+      const Expected<TearProblem> bad = build_tear_problem(*scene, puller);
+      ASSERT_FALSE(bad.has_value()) << message;
+      EXPECT_EQ(bad.error().message(), message);
+    }
+  }
+}
+
 TEST(TearProblem, ABodyOfLargeStrainSaysWhatItDoesNotHave) {
   const std::string corotated = replaced(kPlate, "\"linear\"", "\"corotated\"");
   const std::vector<BadScene> table{
