@@ -23,7 +23,7 @@ constexpr double kFree = 1e-3;
 constexpr double kMostOwed = 2.0;
 /// Two times that differ by less are the same, s.
 constexpr double kSameTime = 1e-9;
-/// Times that a body without a hand gives up before it begins again from rest.
+/// Times that a body without a hand gives up, or is near rest with tets inside out, before it begins again from rest.
 constexpr int kMostGivenUp = 2;
 
 /// Another frame like it would do nothing else.
@@ -193,6 +193,7 @@ MoveReport LiveResponse::move(const Vec3& hand) {
   for (int k = 0; k < settings_.frames; ++k) {
     solver::LiveFrame frame;
     double tolerance = settings_.live.tolerance;
+    bool inside_out = false;  // laws without a wall at J = 0 have equilibria there that no body has
     if (point_ && live_->holds()) {
       frame = live_->step(target(hand));
     } else if (leaving_) {
@@ -205,11 +206,13 @@ MoveReport LiveResponse::move(const Vec3& hand) {
     } else {
       frame = live_->settle();
       tolerance = std::min(tolerance, settings_.live.at_rest);
-      given_up_ = frame.gave_up ? given_up_ + 1 : given_up_;
+      inside_out =
+          frame.residual <= settings_.live.late && live_->inverted_tets() > inverted_from_rest_ && !live_->moves();
+      if (frame.gave_up || inside_out) ++given_up_;
       if (given_up_ == kMostGivenUp) begin_again();
     }
     out.at_rest = frame.reached && frame.corrections == 0 && frame.linear_iterations == 0 &&
-                  frame.residual <= tolerance && !live_->moves();
+                  frame.residual <= tolerance && !inside_out && !live_->moves();
     if (out.at_rest) given_up_ = 0;
     out.late = frame.trouble;
     if (out.at_rest || is_stuck(frame)) break;
@@ -223,6 +226,7 @@ MoveReport LiveResponse::move(const Vec3& hand) {
 void LiveResponse::begin_again() {
   given_up_ = 0;
   if (Expected<model::State> state = equilibrium_from_rest()) make_live(std::move(*state));
+  inverted_from_rest_ = live_->inverted_tets();
 }
 
 DeformedTet LiveResponse::deformed(TetId tet) const {

@@ -94,8 +94,9 @@ class LiveResponse final : public Response {
   std::optional<SurfacePoint> point_;    ///< that the hand holds
   std::optional<SurfacePoint> leaving_;  ///< that it held: led to where no force is, and only then let go
   double size_ = 0.0;                    ///< m, of the body
-  int given_up_ = 0;                     ///< frames without a hand that gave up, in a row
-  double owed_ = 0.0;                    ///< s, that have passed and that the body has not moved by
+  int given_up_ = 0;            ///< frames without a hand that gave up, or were inside out, since it was at rest
+  int inverted_from_rest_ = 0;  ///< tets, that are inside out where it came to rest from the undeformed body
+  double owed_ = 0.0;           ///< s, that have passed and that the body has not moved by
   ContactMode mode_ = ContactMode::hold;
   bool supported_ = false;  ///< the point: nothing holds it then
   Eigen::MatrixXd compliance_;

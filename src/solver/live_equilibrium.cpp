@@ -19,8 +19,8 @@ namespace {
 constexpr int kHalvings = 4;
 /// A correction that leaves more than this times the residual is not taken. Moves out of bending stretch first.
 constexpr double kGrowth = 4.0;
-/// Relative residual of Z when the hand takes hold.
-constexpr double kFirstAnswer = 1e-3;
+/// Of worn_answer: the residual to which Z is solved for when the hand takes hold, and where it stands still.
+constexpr double kStillAnswer = 0.2;
 constexpr int kMostFirstIterations = 200;
 /// Solves of a column of Z, each from what the one before has left, at most.
 constexpr int kAnswerRounds = 4;
@@ -162,13 +162,18 @@ int LiveEquilibrium::refresh_answer(int column, double tolerance, int most) {
     rhs_u_.setZero();
     rhs_lambda_.setZero();
     held_->add(Vec3::Unit(column), rhs_u_);
-    const double left = size_.measure(rhs_u_, rhs_lambda_, u, lambda) / held_->weight.norm();
+    double left = size_.measure(rhs_u_, rhs_lambda_, u, lambda) / held_->weight.norm();
+    if (round == 0 && !(left < 1.0)) {  // worse than none
+      linear_.first_answer(column, u, lambda);
+      left = size_.measure(rhs_u_, rhs_lambda_, u, lambda) / held_->weight.norm();
+    }
     if (round > 0 && !(left < before)) {  // near where the body gives way
       u -= du_;
       lambda -= dlambda_;
       worn_ = true;
-      if (before < kNoAnswer || careful) break;
+      if (before < kNoAnswer || careful) return 0;  // as it was: another frame like it would do nothing else
       careful = true;
+      most += iterations;
       before = std::numeric_limits<double>::infinity();
       continue;
     }
@@ -233,9 +238,9 @@ void LiveEquilibrium::hold(const HeldPoint& point) {
   force_.setZero();
   build_tangent();
   for (int j = 0; j < 3; ++j) {
-    answer_u_[static_cast<std::size_t>(j)].setZero(state_.u.size());
-    answer_lambda_[static_cast<std::size_t>(j)].setZero(state_.lambda.size());
-    refresh_answer(j, kFirstAnswer, kMostFirstIterations);
+    answer_lambda_[static_cast<std::size_t>(j)].resize(state_.lambda.size());
+    linear_.first_answer(j, answer_u_[static_cast<std::size_t>(j)], answer_lambda_[static_cast<std::size_t>(j)]);
+    refresh_answer(j, kStillAnswer * options_.worn_answer, kMostFirstIterations);
   }
   answer_rotation_ = linear_.rotation();
   update_compliance();
@@ -379,7 +384,10 @@ bool LiveEquilibrium::take_correction(bool downhill_only) {
     if (!is_admissible(next) || next.norm > kGrowth * now_.norm) continue;
     // Of loads that follow the surface by the trapezium.
     const double work = 0.5 * (load + external_).dot(trial_.u - state_.u);
-    if (stored_energy(trial_) - work < energy) return take(next);
+    if (stored_energy(trial_) - work < energy) {
+      idle_frames_ = 0;  // it goes on, whatever the residual says
+      return take(next);
+    }
   }
   return false;
 }
@@ -390,7 +398,7 @@ double LiveEquilibrium::stored_energy(const model::State& state) {
   return model_->energy(state) + linear_.energy_of_pressure(residual_.lambda);
 }
 
-/// One column while the body moves, which turns them all; all of them where there is time, and to a fifth of that.
+/// One column while the body moves, which turns them all; all of them, and further, where there is time.
 void LiveEquilibrium::refresh_answers(LiveFrame& frame) {
   if (frame.corrections > 0) {
     turn_answers();
@@ -398,7 +406,7 @@ void LiveEquilibrium::refresh_answers(LiveFrame& frame) {
     frame.linear_iterations += refresh_answer(next_column_, options_.worn_answer, options_.iterations);
   } else {
     for (int j = 0; j < 3; ++j)
-      frame.linear_iterations += refresh_answer(j, 0.2 * options_.worn_answer, options_.iterations);
+      frame.linear_iterations += refresh_answer(j, kStillAnswer * options_.worn_answer, options_.iterations);
   }
   update_compliance();
 }

@@ -90,6 +90,7 @@ class LiveEquilibrium {
   [[nodiscard]] const model::Loading& loading() const { return loading_; }
   /// Of the residual to the forces, as LiveFrame has it.
   [[nodiscard]] double residual() const { return now_.relative; }
+  [[nodiscard]] int inverted_tets() const { return now_.evaluation.inverted_tets; }
   [[nodiscard]] std::size_t memory_bytes() const { return linear_.memory_bytes() + model_->memory_bytes(); }
   /// Displacement of the held point, m.
   [[nodiscard]] Vec3 point() const;

@@ -347,6 +347,13 @@ void LiveLinear::invert_pressure(const VectorX& b, VectorX& x, bool careful) {
   }
 }
 
+void LiveLinear::first_answer(int j, VectorX& xu, VectorX& xp) {
+  xu = answer_[static_cast<std::size_t>(j)];
+  if (xp.size() == 0) return;
+  K_->B.multiply(xu, q_);
+  invert_pressure(q_, xp, true);
+}
+
 double LiveLinear::energy_of_pressure(const VectorX& rp) {
   if (rp.size() == 0) return 0.0;
   invert_pressure(rp, p_, true);
@@ -375,7 +382,7 @@ LiveSolve LiveLinear::solve(Point point, const VectorX& bu, const VectorX& bp, d
     out.iterations = result.iterations;
     worked_ += result.iterations;
     out.truncated = result.end == linalg::CgEnd::negative_curvature;
-    if (out.truncated) {
+    if (out.truncated && point == Point::fixed) {
       const double slope = r_.dot(work_.z);
       xu += slope / std::max(std::abs(work_.p.dot(work_.q)), kFlat * slope) * work_.p;
     }

@@ -62,8 +62,9 @@ inline constexpr int kRefreshWork = 60;
 
 struct LiveSolve {
   int iterations = 0;
-  bool truncated = false;  ///< a direction of negative curvature was met: the answer goes on along it (Steihaug 1983),
-                           ///< which is downhill in energy, and may be uphill in the residual
+  /// A direction of negative curvature was met. An answer with the point fixed goes on along it (Steihaug 1983), which
+  /// is downhill in energy and may be uphill in the residual; one with it free is what there was before it.
+  bool truncated = false;
 };
 
 class LiveLinear {
@@ -85,6 +86,9 @@ class LiveLinear {
   [[nodiscard]] const std::vector<Mat3>& rotation() const { return rotation_; }
   /// N of the solves that are to leave N x = 0: the displacement of the point. Empty: there is none.
   void set_constraint(const std::optional<HeldPoint>& point);
+  /// P~^-1 N^T e_j with the pressures that go with it: a first answer to the hand, positive definite over the j
+  /// whatever the tangent is.
+  void first_answer(int j, VectorX& xu, VectorX& xp);
   /// K (xu, xp) ~ (bu, bp) over the free dofs to a relative residual of `tolerance`, at most `most` iterations.
   /// `fixed`: with N xu = 0, by projection of the residuals and a preconditioner that knows the constraint (Gould,
   /// Hribar, Nocedal 2001); what is left of a residual along N^T is the force that keeps it, and counts as nothing.
