@@ -23,7 +23,7 @@ const { values: options } = parseArgs({
 const kPort = 18735;
 const kSettle = 2000; // ms, after the first state: the page is drawn, the rates are those of the script
 const kSpeed = 0.05; // m/s, of the hand
-const kWays = [[0.02, 0.0, 0.0], [0.0, 0.02, 0.0], [0.0, 0.0, 0.015], [0.012, 0.0, 0.012]]; // m
+const kWays = [[0.012, 0.0, 0.0], [0.0, 0.012, 0.0], [0.0, 0.0, 0.006], [0.008, 0.008, 0.0]]; // m
 
 const rod = `title = "Soft rod"
 [mesh]
@@ -44,7 +44,7 @@ y = 0.0
 z = 0.0
 [fracture]
 criterion = "maximum-hoop"
-strength = 1.0e9
+strength = 1.0e15
 incision = "split"
 [[crack]]
 from = [0.015, 0.0, 0.03]
@@ -134,7 +134,8 @@ try {
   console.log("| ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: |");
   for (const nodes of options.nodes.split(",")) {
     for (const model of options.models.split(",")) {
-      const found = await measure(browser, scene, nodes, model, seconds);
+      const found = await measure(browser, scene, nodes, model, seconds).catch((error) => console.error(error.message));
+      if (!found) continue;
       console.log(
         `| ${found.tets} | ${model} | ${found.frames.toFixed(0)} | ${found.least.toFixed(0)} | ${(100 * found.kept).toFixed(2)}%${found.realtime ? "" : " (no real-time priority)"} ` +
           `| ${found.late.toFixed(1)} | ${found.age.toFixed(0)} | ${found.pictures.toFixed(0)} |`,

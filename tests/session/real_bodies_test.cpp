@@ -202,14 +202,13 @@ class SoftRealBodies : public testing::TestWithParam<SoftBody> {
     return std::move(*choice);
   }
 
-  /// Nothing is NaN; and in a body of large strain no tet inside out.
+  /// Nothing is NaN; and where the law has an answer only for what is not inside out, no tet is. `least`: J so far.
   static void check_state(TearSession& tear, double& least) {
     VectorX u;
     tear.displacement(u);
     ASSERT_TRUE(u.allFinite());
-    if (tear.is_linear()) return;
     least = std::min(least, test::least_volume_ratio(tear.body(), u));
-    ASSERT_GT(least, 0.0);
+    if (tear.model_name() == "hyperelastic") ASSERT_GT(least, 0.0);
   }
 };
 
