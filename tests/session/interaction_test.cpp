@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/session/interaction_case.h"
 #include "tests/session/live_case.h"
 #include "tests/support/replaced.h"
 
@@ -10,66 +11,16 @@ namespace {
 
 using test::payload;
 
-/// Keeps what it hears.
-struct Heard final : InteractionListener {
-  void has_body(bool anew) override { bodies += anew ? 1 : 0; }
-  void has_torn(const AdvanceRecord& advance, const SurfaceChange& /*change*/) override {
-    topologies.push_back(advance.topology);
-  }
-  void says(wire::Level /*level*/, const std::string& text) override { texts.push_back(text); }
-  int bodies = 0;
-  std::vector<std::size_t> topologies;
-  std::vector<std::string> texts;
-};
-
-struct Case {
-  explicit Case(std::string text = test::kLivePlate)
-      : interaction(
-            open(std::move(text)), [](const std::string&) { return fail("none"); }, heard) {}
-  static std::unique_ptr<OpenBody> open(std::string text) {
-    Expected<std::unique_ptr<OpenBody>> body = open_body({.file = "s.toml", .text = std::move(text), .overrides = {}});
-    EXPECT_TRUE(body.has_value()) << body.error().message();
-    return std::move(*body);
-  }
-  /// A step in which the hand is where a rigid device without delay has it, as time stands still while the body tears.
-  StepOutcome step() {
-    haptics::HandState hand;
-    if (tore == 0) ++tick;
-    hand.tick = tick;
-    hand.grasp = interaction.law().grasp;
-    const bool holds = (interaction.law().flags & response::ForceSnapshot::is_held) != 0;
-    hand.flags = holds ? haptics::HandState::holds : 0U;
-    const Vec3 at = interaction.orders().hold != 0 ? interaction.orders().at(tick) : by;
-    hand.hand = {at[0], at[1], at[2]};
-    const StepOutcome out = interaction.step(hand, true);
-    tore = out.advances;
-    return out;
-  }
-  /// Of the whole script.
-  std::vector<StepOutcome> run_script() {
-    wire::ScriptT on;
-    on.on = true;
-    interaction.carry_out(payload(on));
-    std::vector<StepOutcome> out;
-    for (int k = 0; k < 600; ++k) out.push_back(step());
-    return out;
-  }
-
-  Heard heard;
-  Interaction interaction;
-  std::uint64_t tick = 0;
-  int tore = 0;  ///< advances of the last step
-  Vec3 by = Vec3::Zero();
-};
+using test::InteractionCase;
 
 TEST(Interaction, AScriptIsTheOneOfTheCommandTear) {
-  Case live;
+  InteractionCase live;
   live.run_script();
   EXPECT_FALSE(live.interaction.is_scripted());
   EXPECT_THAT(live.heard.texts, testing::Contains("the script has come to its end"));
 
   // The loop of `rhexis tear`: 500 ticks, each held against the other's tears.
-  const auto body = Case::open(test::kLivePlate);
+  const auto body = InteractionCase::open(InteractionCase::choice_of(test::kLivePlate));
   TearSession& tear = body->tear();
   ASSERT_TRUE(tear.grasp(body->problem.pulls[0].at).has_value());
   for (int k = 1; k <= 500; ++k) tear.tick(body->problem.pulls[0].by * (k / 500.0));
@@ -86,8 +37,8 @@ TEST(Interaction, AScriptIsTheOneOfTheCommandTear) {
 
 /// The script of the scene twice, each step of one like that of the other.
 void expect_same_bits(const std::string& text) {
-  Case one(text);
-  Case other(text);
+  InteractionCase one(text);
+  InteractionCase other(text);
   const std::vector<StepOutcome> a = one.run_script();
   const std::vector<StepOutcome> b = other.run_script();
   int tears = 0;
@@ -108,12 +59,9 @@ TEST(Interaction, TheSameInputsGiveTheSameBits) {
 }
 
 TEST(Interaction, EveryLiveModelIsTornAndSwitchedWhileItIsOpen) {
-  Case live;
+  InteractionCase live;
   for (const char* model : {"hyperelastic", "corotated", "geometrically-nonlinear", "linear"}) {
-    wire::SetValueT set;
-    set.key = "model.kind";
-    set.value = model;
-    live.interaction.carry_out(payload(set));
+    live.set("model.kind", model);
     ASSERT_EQ(live.interaction.tear().model_name(), model);
     live.heard.topologies.clear();
     for (const StepOutcome& step : live.run_script()) ASSERT_TRUE(step.force.allFinite()) << model;
@@ -123,7 +71,7 @@ TEST(Interaction, EveryLiveModelIsTornAndSwitchedWhileItIsOpen) {
 }
 
 TEST(Interaction, AnUndoneTearIsAnotherBodyThanTheOneBefore) {
-  Case live;
+  InteractionCase live;
   const std::uint64_t intact = live.step().fingerprint;
   live.run_script();
   const std::size_t tears = live.heard.topologies.size();
@@ -142,7 +90,7 @@ TEST(Interaction, WithoutFractureTheBodyBendsAndNeverTears) {
   std::string text = test::kLivePlate;
   const std::string fracture = "[fracture]\ncriterion = \"maximum-principal\"\nstrength = 0.4e6\n";
   text.erase(text.find(fracture), fracture.size());
-  Case live(text);
+  InteractionCase live(text);
   const std::vector<StepOutcome> steps = live.run_script();
   EXPECT_TRUE(live.heard.topologies.empty());
   // It goes on where the other has torn long ago: in line with the way.
@@ -152,7 +100,7 @@ TEST(Interaction, WithoutFractureTheBodyBendsAndNeverTears) {
 }
 
 TEST(Interaction, AHandThatFollowsAnotherHoldIsNotFollowed) {
-  Case live;
+  InteractionCase live;
   wire::GraspT grasp;
   grasp.weights = std::make_unique<wire::Vec3>(1.0, 0.0, 0.0);
   const SurfaceTracker& surface = live.interaction.body().surface;
@@ -175,7 +123,7 @@ TEST(Interaction, WhatTheHandTearsOffIsLetGoAndSaid) {
   std::string text = test::kLivePlate;
   text.replace(text.find("strength = 0.4e6"), 16, "strength = 2.0e4");
   text.replace(text.find("to = [0.12, 0.06"), 16, "to = [0.12, 0.20");
-  Case live(text);
+  InteractionCase live(text);
   live.run_script();
   EXPECT_THAT(live.heard.texts, testing::Contains(testing::HasSubstr("the hand has let go")));
   EXPECT_NE(live.interaction.law().flags & response::ForceSnapshot::torn_off, 0U);

@@ -15,6 +15,7 @@
 #include "tests/support/full_solve.h"
 #include "tests/support/measured.h"
 #include "tests/support/random_draws.h"
+#include "tests/support/solved_tets.h"
 
 namespace rhexis::session {
 namespace {
@@ -143,15 +144,9 @@ class LivePull {
     VectorX u;
     tear_->displacement(u);
     ASSERT_TRUE(u.allFinite()) << seed_;
-    mesh::TetMesh moved = tear_->body().mesh();
-    for (std::size_t i = 0; i < moved.nodes.size(); ++i)
-      moved.nodes[i] += u.segment<3>(3 * static_cast<Eigen::Index>(i));
-    for (std::size_t t = 0; t < moved.tets.size(); ++t) {
-      if (!tear_->body().is_solved(TetId(t))) continue;
-      const double J = mesh::signed_volume(moved, TetId(t)) / mesh::signed_volume(tear_->body().mesh(), TetId(t));
-      ASSERT_GT(J, 0.0) << seed_ << " tet " << t;
-      tally.least_J = std::min(tally.least_J, J);
-    }
+    const double least = test::least_volume_ratio(tear_->body(), u);
+    ASSERT_GT(least, 0.0) << seed_;
+    tally.least_J = std::min(tally.least_J, least);
   }
 
   /// Near what is held, as the body is long.

@@ -1,0 +1,148 @@
+// Rates of a live body with the page attached, as a table of docs/live-models.md: each model on a soft rod of three sizes, pulled by a script.
+//
+//   make viewer build && node tools/live_rates.mjs [--seconds 10] [--nodes 300,2100,10000] [--models linear,hyperelastic]
+//
+// Needs Chromium, which draws the page without a graphics card, on the same cores. The rod is that of `rhexis study live-models`; it has a cut, judged in every frame, that does not run on.
+import { spawn } from "node:child_process";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { parseArgs } from "node:util";
+
+const repository = new URL("..", import.meta.url).pathname;
+const { chromium } = createRequire(join(repository, "viewer/package.json"))("playwright-core");
+const { values: options } = parseArgs({
+  options: {
+    seconds: { type: "string", default: "10" },
+    nodes: { type: "string", default: "300,2100,10000" },
+    models: { type: "string", default: "linear,corotated,geometrically-nonlinear,hyperelastic" },
+    command: { type: "string", default: join(repository, "build/release/bin/rhexis") },
+  },
+});
+const kPort = 18735;
+const kSettle = 2000; // ms, after the first state: the page is drawn, the rates are those of the script
+const kSpeed = 0.05; // m/s, of the hand
+const kWays = [[0.012, 0.0, 0.0], [0.0, 0.012, 0.0], [0.0, 0.0, 0.006], [0.008, 0.008, 0.0]]; // m
+
+const rod = `title = "Soft rod"
+[mesh]
+generate = "tube"
+radius = 0.01
+length = 0.06
+nodes = 300
+[material]
+density = 1000.0
+young = 1.0e5
+poisson = 0.49
+[model]
+kind = "linear"
+[[support]]
+set = "bottom"
+x = 0.0
+y = 0.0
+z = 0.0
+[fracture]
+criterion = "maximum-hoop"
+strength = 1.0e15
+incision = "split"
+[[crack]]
+from = [0.015, 0.0, 0.03]
+to = [0.0, 0.0, 0.03]
+through = [0.0, 1.0, 0.0]
+`;
+
+function pulls(seconds) {
+  let out = "";
+  for (let k = 0, passed = 0; passed < seconds; ++k) {
+    const by = kWays[k % kWays.length];
+    const takes = Math.hypot(...by) / kSpeed;
+    passed += takes;
+    out += `[[pull]]\nat = [0.01, 0.0, 0.05]\nby = [${by.map((x) => x.toFixed(4)).join(", ")}]\nseconds = ${takes}\n`;
+  }
+  return out;
+}
+
+async function open(page, program) {
+  for (let tries = 0; ; ++tries) {
+    try {
+      await page.goto(`http://127.0.0.1:${kPort}/`);
+      break;
+    } catch (error) {
+      if (tries === 200 || program.exitCode !== null) throw error;
+      await new Promise((done) => setTimeout(done, 100));
+    }
+  }
+  await page.waitForFunction(() => window.rhexis?.state?.held === true, undefined, { timeout: 60_000 });
+}
+
+const read = (page) =>
+  page.evaluate(() => {
+    const { body, state, pictures } = window.rhexis;
+    const { physicsHz, physicsWorstMs, hapticMissed, hapticWorstUs, snapshotAgeMs, realtime } = state.rates;
+    return { tick: Number(state.tick), missed: Number(hapticMissed), physicsHz, physicsWorstMs, hapticWorstUs, snapshotAgeMs, realtime, pictures, tets: body.tets, scripted: state.scripted };
+  });
+
+async function measure(browser, scene, nodes, model, seconds) {
+  const program = spawn(
+    options.command,
+    ["play", scene, "--device", "script", "--set", `mesh.nodes=${nodes}`, "--set", `model.kind=${model}`, "--port", `${kPort}`, "--no-browser"],
+    { cwd: repository, stdio: ["ignore", "ignore", "inherit"] },
+  );
+  const ended = new Promise((done) => program.once("exit", done));
+  const page = await browser.newPage({ viewport: { width: 800, height: 600 } });
+  try {
+    await open(page, program);
+    await page.waitForTimeout(kSettle);
+    const first = await read(page);
+    const each = [];
+    for (let k = 0; k < seconds; ++k) {
+      await page.waitForTimeout(1000);
+      each.push(await read(page));
+    }
+    const last = each[each.length - 1];
+    if (!last.scripted) throw new Error(`${model}, ${nodes} nodes: the script has ended before its time`);
+    const ticks = last.tick - first.tick;
+    const sorted = each.map((now) => now.physicsHz).sort((a, b) => a - b);
+    return {
+      frames: sorted[Math.floor(sorted.length / 2)],
+      least: sorted[0],
+      kept: 1 - (last.missed - first.missed) / ticks,
+      tets: last.tets,
+      late: Math.max(...each.map((now) => now.hapticWorstUs)) / 1000,
+      age: Math.max(...each.map((now) => now.snapshotAgeMs)),
+      pictures: (1000 * (last.pictures - first.pictures)) / ticks,
+      realtime: last.realtime,
+    };
+  } finally {
+    await page.close();
+    program.kill("SIGINT");
+    await ended;
+  }
+}
+
+const folder = mkdtempSync(join(tmpdir(), "rhexis-"));
+const scene = join(folder, "rod.toml");
+const seconds = Number(options.seconds);
+writeFileSync(scene, rod + pulls(2 * seconds + 10));
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+  args: ["--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--disable-background-networking"],
+});
+try {
+  console.log("| tets | model | frames/s, median | worst second | haptic ticks within 1 ms | latest tick, ms | oldest law, ms | pictures/s of the page |");
+  console.log("| ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: |");
+  for (const nodes of options.nodes.split(",")) {
+    for (const model of options.models.split(",")) {
+      const found = await measure(browser, scene, nodes, model, seconds).catch((error) => console.error(error.message));
+      if (!found) continue;
+      console.log(
+        `| ${found.tets} | ${model} | ${found.frames.toFixed(0)} | ${found.least.toFixed(0)} | ${(100 * found.kept).toFixed(2)}%${found.realtime ? "" : " (no real-time priority)"} ` +
+          `| ${found.late.toFixed(1)} | ${found.age.toFixed(0)} | ${found.pictures.toFixed(0)} |`,
+      );
+    }
+  }
+} finally {
+  await browser.close();
+  rmSync(folder, { recursive: true });
+}
