@@ -70,8 +70,8 @@ class LiveEquilibrium {
   void let_go();
   [[nodiscard]] bool holds() const { return held_.has_value(); }
 
-  /// One frame: the point to `hand` (m), then corrections. Never hands out a state with more inverted tets or a force
-  /// that is not finite: it stays where it was instead, and says so.
+  /// One frame: the point to `hand` (m), then corrections. Never hands out a force that is not finite, or a state with
+  /// an inverted tet where the law has no answer there: it stays where it was instead, and says so.
   LiveFrame step(const Vec3& hand);
   /// One frame without a hand.
   LiveFrame settle();
