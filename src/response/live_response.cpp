@@ -206,9 +206,11 @@ MoveReport LiveResponse::move(const Vec3& hand) {
     } else {
       frame = live_->settle();
       tolerance = std::min(tolerance, settings_.live.at_rest);
-      inside_out =
-          frame.residual <= settings_.live.late && live_->inverted_tets() > inverted_from_rest_ && !live_->moves();
-      if (frame.gave_up || inside_out) ++given_up_;
+      // With mass it is halted where it is and goes on from there: to begin again would take it elsewhere at once.
+      if (!settings_.dynamics) {
+        inside_out = frame.residual <= settings_.live.late && live_->inverted_tets() > inverted_from_rest_;
+        if (frame.gave_up || inside_out) ++given_up_;
+      }
       if (given_up_ == kMostGivenUp) begin_again();
     }
     out.at_rest = frame.reached && frame.corrections == 0 && frame.linear_iterations == 0 &&
