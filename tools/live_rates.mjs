@@ -23,7 +23,7 @@ const { values: options } = parseArgs({
 const kPort = 18735;
 const kSettle = 2000; // ms, after the first state: the page is drawn, the rates are those of the script
 const kSpeed = 0.05; // m/s, of the hand
-const kWays = [[0.012, 0.0, 0.0], [0.0, 0.012, 0.0], [0.0, 0.0, 0.006], [0.008, 0.008, 0.0]]; // m
+const kWays = [[0.025, 0.0, 0.0], [0.0, 0.025, 0.0], [0.0, 0.0, 0.015], [0.018, 0.018, 0.0]]; // m; then it takes hold anew
 
 const rod = `title = "Soft rod"
 [mesh]
@@ -64,15 +64,16 @@ function pulls(seconds) {
 }
 
 async function open(page, program) {
-  for (let tries = 0; ; ++tries) {
+  for (let tries = 0; ; ++tries) {  // not with the page, whose error pages take the core that the body is prepared on
     try {
-      await page.goto(`http://127.0.0.1:${kPort}/`);
+      await fetch(`http://127.0.0.1:${kPort}/`);
       break;
     } catch (error) {
-      if (tries === 200 || program.exitCode !== null) throw error;
+      if (tries === 600 || program.exitCode !== null) throw error;
       await new Promise((done) => setTimeout(done, 100));
     }
   }
+  await page.goto(`http://127.0.0.1:${kPort}/`);
   await page.waitForFunction(() => window.rhexis?.state?.held === true, undefined, { timeout: 60_000 });
 }
 

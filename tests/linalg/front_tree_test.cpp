@@ -77,8 +77,20 @@ void expect_exact(const FrontTree& tree, const FrontBody& body, const Nodes& kep
     for (const std::int32_t dof : oracle.free.dof) b[dof] = oracle.load[dof];
     VectorX whole;
     FrontSolver::Work work;
-    FrontSolver(tree).solve(b, whole, work);
+    const FrontSolver solver(tree);
+    solver.solve(b, whole, work);
     EXPECT_LT(difference(whole, oracle.solution), kSameSingle);
+    const FourLanes four = b * Eigen::RowVector4d(1.0, -2.0, 0.0, 0.5);
+    FourLanes of_four;
+    solver.solve(four, of_four, work);
+    EXPECT_LT(difference(Eigen::MatrixXd(of_four),
+                         Eigen::MatrixXd(oracle.solution * Eigen::RowVector4d(1.0, -2.0, 0.0, 0.5))),
+              kSameSingle);
+    const TwoLanes two = b * Eigen::RowVector2d(0.0, 3.0);
+    TwoLanes of_two;
+    solver.solve(two, of_two, work);
+    EXPECT_LT(difference(Eigen::MatrixXd(of_two), Eigen::MatrixXd(oracle.solution * Eigen::RowVector2d(0.0, 3.0))),
+              kSameSingle);
   }
 
   VectorX amount(columns);
