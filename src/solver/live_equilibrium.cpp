@@ -303,14 +303,16 @@ LiveFrame LiveEquilibrium::settle() {
   return advance(nullptr);
 }
 
-/// f + C^-1 Z^T r, r the residual of the state with its multiplier.
+/// f + C^-1 Z^T r, r the residual of the state with its multiplier; f alone while Z is none, where the tangent has no
+/// answer.
 void LiveEquilibrium::correct_force() {
   Vec3 work;
   for (int j = 0; j < 3; ++j) {
     const auto k = static_cast<std::size_t>(j);
     work[j] = answer_u_[k].dot(residual_.u) + answer_lambda_[k].dot(residual_.lambda);
   }
-  force_ = multiplier_ + stiffness_ * work;
+  const Vec3 corrected = multiplier_ + stiffness_ * work;
+  force_ = corrected.allFinite() ? corrected : multiplier_;
 }
 
 /// The first guess: the last tangent's answer to the move of the hand, shortened where a tet would invert. False: there
@@ -456,7 +458,8 @@ LiveFrame LiveEquilibrium::advance(const Vec3* hand) {
   if (linear_.is_refreshing()) beside.emplace();
   frame.reached = hand == nullptr || now_.relative <= options_.late || begun_;
   begun_ = false;
-  if (hand != nullptr && frame.reached && !follow(*hand, frame)) {
+  const bool stays = hand != nullptr && frame.reached && !follow(*hand, frame);
+  if (stays && !inertia_) {  // the step of a body with mass goes on all the same
     frame.residual = now_.relative;
     return frame;
   }
