@@ -1,5 +1,6 @@
 #include "fracture/criterion.h"
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,7 @@ Expected<std::unique_ptr<Criterion>> make_criterion(std::string_view name, const
 
 Judgement by_toughness(const Judgement& judgement, double energy_release, double toughness, double mean_edge) {
   Judgement out = judgement;
-  out.met = judgement.value > 0.0 && energy_release >= toughness;
+  out.met = judgement.value > 0.0 && std::isfinite(energy_release) && energy_release >= toughness;
   out.length = mean_edge;
   return out;
 }

@@ -55,7 +55,7 @@ class Criterion {
 /// With a toughness (N/m, energy per area of crack) in place of the strength: tears where the energy release (N/m) of
 /// the point reaches it, while the criterion finds tension there (value > 0; a closed crack releases nothing); the
 /// direction is the criterion's, the length one mean edge. Judged again after each advance, the crack goes on while the
-/// release stays at or above the toughness.
+/// release stays at or above the toughness. A release that is not finite meets none.
 [[nodiscard]] Judgement by_toughness(const Judgement& judgement, double energy_release, double toughness,
                                      double mean_edge);
 

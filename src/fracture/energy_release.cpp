@@ -21,24 +21,19 @@ double plateau(double distance, const EnergyDomain& domain) {
 
 struct Bodily {
   const mesh::TornMesh& body;
-  const material::Elastic& elastic;
-  std::span<const TetId> tets;
-  std::span<const Mat3> gradients;
+  std::span<const EnergyTet> tets;
   const Vec3& body_force;
 };
 
-/// What tet `i` of the list, of corners `x`, adds to the integral, J/m times m: d the direction, q at its corners.
-double share(const Bodily& bodily, std::size_t i, const std::array<Vec3, 4>& x, const Vec3& d,
+/// What a tet of corners `x` adds to the integral, J/m times m: d the direction, q at its corners.
+double share(const EnergyTet& tet, const Vec3& body_force, const std::array<Vec3, 4>& x, const Vec3& d,
              const std::array<double, 4>& q) {
-  const element::LinearTet tet = element::make_linear_tet(x);
-  const Mat3& gradient = bodily.gradients[i];
-  const Mat3 stress = element::small_strain_stress(bodily.elastic, gradient);
-  const double energy = 0.5 * stress.cwiseProduct(gradient).sum();  // sigma is symmetric: sigma : grad u = sigma : eps
+  const element::LinearTet shape = element::make_linear_tet(x);
   Vec3 slope = Vec3::Zero();
-  for (std::size_t k = 0; k < 4; ++k) slope += q[k] * tet.gradient[k];
-  const Vec3 along = gradient * d;  // u,k d_k
+  for (std::size_t k = 0; k < 4; ++k) slope += q[k] * shape.gradient[k];
+  const Vec3 along = tet.gradient * d;  // u,K d_K
   const double q_mean = 0.25 * (q[0] + q[1] + q[2] + q[3]);
-  return tet.volume * (slope.dot(stress * along) - energy * slope.dot(d) - q_mean * bodily.body_force.dot(along));
+  return shape.volume * (along.dot(tet.P * slope) - tet.W * slope.dot(d) - q_mean * body_force.dot(along));
 }
 
 /// A point of a polyline: its distance along it, and of another point from it.
@@ -64,8 +59,8 @@ double release_of_line(const Bodily& bodily, const FrontPoint& point, const Ener
   double sum = 0.0;
   double lowest = std::numeric_limits<double>::infinity();  // extent of the plate along its front
   double highest = -lowest;
-  for (std::size_t i = 0; i < bodily.tets.size(); ++i) {
-    const std::array<Vec3, 4> x = mesh::corners(bodily.body.mesh(), bodily.tets[i]);
+  for (const EnergyTet& tet : bodily.tets) {
+    const std::array<Vec3, 4> x = mesh::corners(bodily.body.mesh(), tet.tet);
     std::array<double, 4> q{};
     for (std::size_t k = 0; k < 4; ++k) {
       const Vec3 way = x[k] - point.position;
@@ -74,7 +69,7 @@ double release_of_line(const Bodily& bodily, const FrontPoint& point, const Ener
       highest = std::max(highest, along);
       q[k] = plateau((way - along * point.tangent).norm(), domain);
     }
-    if (q != std::array<double, 4>{}) sum += share(bodily, i, x, point.direction, q);
+    if (q != std::array<double, 4>{}) sum += share(tet, bodily.body_force, x, point.direction, q);
   }
   return highest > lowest ? sum / (highest - lowest) : 0.0;
 }
@@ -87,8 +82,8 @@ std::vector<double> release_of_points(const Bodily& bodily, const std::vector<Fr
   const double length = at.back();
   const double width = kSegmentsWide * length / static_cast<double>(front.size() - 1);
   std::vector<double> release(front.size(), 0.0);
-  for (std::size_t i = 0; i < bodily.tets.size(); ++i) {
-    const std::array<Vec3, 4> x = mesh::corners(bodily.body.mesh(), bodily.tets[i]);
+  for (const EnergyTet& tet : bodily.tets) {
+    const std::array<Vec3, 4> x = mesh::corners(bodily.body.mesh(), tet.tet);
     std::array<Foot, 4> foot;
     std::array<double, 4> q{};
     for (std::size_t k = 0; k < 4; ++k) {
@@ -99,7 +94,8 @@ std::vector<double> release_of_points(const Bodily& bodily, const std::vector<Fr
     for (std::size_t point = 0; point < front.size(); ++point) {
       std::array<double, 4> hat{};
       for (std::size_t k = 0; k < 4; ++k) hat[k] = q[k] * std::max(0.0, 1.0 - std::abs(foot[k].at - at[point]) / width);
-      if (hat != std::array<double, 4>{}) release[point] += share(bodily, i, x, front[point].direction, hat);
+      if (hat != std::array<double, 4>{})
+        release[point] += share(tet, bodily.body_force, x, front[point].direction, hat);
     }
   }
   for (std::size_t point = 0; point < front.size(); ++point) {
@@ -114,12 +110,22 @@ std::vector<double> release_of_points(const Bodily& bodily, const std::vector<Fr
 
 }  // namespace
 
-std::vector<double> energy_release(const mesh::TornMesh& body, const material::Elastic& elastic, const Crack& crack,
-                                   std::span<const TetId> tets, std::span<const Mat3> gradients,
-                                   const EnergyDomain& domain, const Vec3& body_force) {
+std::vector<EnergyTet> small_strain_energies(const material::Elastic& elastic, std::span<const TetId> tets,
+                                             std::span<const Mat3> gradients) {
   RHEXIS_CHECK(tets.size() == gradients.size(), "{} tets have {} gradients", tets.size(), gradients.size());
+  std::vector<EnergyTet> out(tets.size());
+  for (std::size_t i = 0; i < tets.size(); ++i) {
+    const Mat3 stress = element::small_strain_stress(elastic, gradients[i]);
+    // sigma is symmetric: sigma : grad u = sigma : eps
+    out[i] = {tets[i], gradients[i], stress, 0.5 * stress.cwiseProduct(gradients[i]).sum()};
+  }
+  return out;
+}
+
+std::vector<double> energy_release(const mesh::TornMesh& body, const Crack& crack, std::span<const EnergyTet> tets,
+                                   const EnergyDomain& domain, const Vec3& body_force) {
   RHEXIS_CHECK(domain.outer > domain.inner && domain.inner >= 0.0, "q falls from {} to {}", domain.inner, domain.outer);
-  const Bodily bodily{body, elastic, tets, gradients, body_force};
+  const Bodily bodily{body, tets, body_force};
   if (crack.uniform) return {release_of_line(bodily, crack.front.front(), domain)};
   return release_of_points(bodily, crack.front, domain);
 }

@@ -116,34 +116,43 @@ SymmetricBlockMatrix::SymmetricBlockMatrix(std::shared_ptr<const BlockPattern> o
 
 void SymmetricBlockMatrix::set_zero() { std::fill(values.begin(), values.end(), 0.0); }
 
-void SymmetricBlockMatrix::multiply(const VectorX& x, VectorX& y) const {
-  RHEXIS_CHECK(x.size() == 3 * rows() && y.size() == x.size(), "{} rows, x {}, y {}", rows(), x.size(), y.size());
+template <int k>
+void SymmetricBlockMatrix::multiply(const Lanes<k>& x, Lanes<k>& y) const {
+  RHEXIS_CHECK(x.rows() == 3 * rows() && y.rows() == x.rows(), "{} rows, x {}, y {}", rows(), x.rows(), y.rows());
+  using Row = Eigen::Array<double, k, 1>;
+  using Given = Eigen::Map<const Row>;
   const auto multiply_rows = [&](std::size_t begin, std::size_t end) {
     const BlockPattern& p = *pattern;
-    const double* const from = x.data();
+    const auto given = [from = x.data()](std::int32_t node) { return from + 3 * k * static_cast<std::size_t>(node); };
     for (std::size_t row = begin; row < end; ++row) {
-      double y0 = 0.0;
-      double y1 = 0.0;
-      double y2 = 0.0;
-      for (std::int32_t k = p.row_start[row]; k < p.row_start[row + 1]; ++k) {
-        const double* a = values.data() + 9 * static_cast<std::size_t>(k);
-        const double* v = from + 3 * static_cast<std::size_t>(p.column[static_cast<std::size_t>(k)]);
-        y0 += a[0] * v[0] + a[1] * v[1] + a[2] * v[2];
-        y1 += a[3] * v[0] + a[4] * v[1] + a[5] * v[2];
-        y2 += a[6] * v[0] + a[7] * v[1] + a[8] * v[2];
+      Row y0 = Row::Zero();
+      Row y1 = Row::Zero();
+      Row y2 = Row::Zero();
+      for (std::int32_t i = p.row_start[row]; i < p.row_start[row + 1]; ++i) {
+        const double* const a = values.data() + 9 * static_cast<std::size_t>(i);
+        const double* const v = given(p.column[static_cast<std::size_t>(i)]);
+        const Given v0(v);
+        const Given v1(v + k);
+        const Given v2(v + 2 * k);
+        y0 += a[0] * v0 + a[1] * v1 + a[2] * v2;
+        y1 += a[3] * v0 + a[4] * v1 + a[5] * v2;
+        y2 += a[6] * v0 + a[7] * v1 + a[8] * v2;
       }
-      for (auto k = static_cast<std::size_t>(p.below_start[row]); k < static_cast<std::size_t>(p.below_start[row + 1]);
-           ++k) {
-        const double* a = values.data() + 9 * static_cast<std::size_t>(p.below_block[k]);
-        const double* v = from + 3 * static_cast<std::size_t>(p.below_row[k]);
-        y0 += a[0] * v[0] + a[3] * v[1] + a[6] * v[2];
-        y1 += a[1] * v[0] + a[4] * v[1] + a[7] * v[2];
-        y2 += a[2] * v[0] + a[5] * v[1] + a[8] * v[2];
+      for (auto i = static_cast<std::size_t>(p.below_start[row]); i < static_cast<std::size_t>(p.below_start[row + 1]);
+           ++i) {
+        const double* const a = values.data() + 9 * static_cast<std::size_t>(p.below_block[i]);
+        const double* const v = given(p.below_row[i]);
+        const Given v0(v);
+        const Given v1(v + k);
+        const Given v2(v + 2 * k);
+        y0 += a[0] * v0 + a[3] * v1 + a[6] * v2;
+        y1 += a[1] * v0 + a[4] * v1 + a[7] * v2;
+        y2 += a[2] * v0 + a[5] * v1 + a[8] * v2;
       }
-      double* const to = y.data() + 3 * row;
-      to[0] = y0;
-      to[1] = y1;
-      to[2] = y2;
+      Eigen::Map<Eigen::Array<double, k, 3, k == 1 ? Eigen::RowMajor : Eigen::ColMajor>> to(y.data() + 3 * k * row);
+      to.col(0) = y0;
+      to.col(1) = y1;
+      to.col(2) = y2;
     }
   };
   const auto count = static_cast<std::size_t>(rows());
@@ -153,5 +162,9 @@ void SymmetricBlockMatrix::multiply(const VectorX& x, VectorX& y) const {
     parallel_ranges(count, kRowGrain, std::ref(multiply_rows));
   }
 }
+
+void SymmetricBlockMatrix::multiply(const VectorX& x, VectorX& y) const { multiply<1>(x, y); }
+template void SymmetricBlockMatrix::multiply<2>(const TwoLanes&, TwoLanes&) const;
+template void SymmetricBlockMatrix::multiply<4>(const FourLanes&, FourLanes&) const;
 
 }  // namespace rhexis::linalg

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "base/vec.h"
+#include "linalg/lanes.h"
 
 namespace rhexis::linalg {
 
@@ -47,8 +47,10 @@ struct SymmetricBlockMatrix {
   explicit SymmetricBlockMatrix(std::shared_ptr<const BlockPattern> of);
   [[nodiscard]] std::int32_t rows() const { return pattern ? pattern->rows() : 0; }
   void set_zero();
-  /// y = A x; both of length 3 * rows(). No allocation; the same bits whatever the number of threads.
+  /// y = A x; both of 3 * rows() rows. No allocation; the same bits whatever the number of threads.
   void multiply(const VectorX& x, VectorX& y) const;
+  template <int k>
+  void multiply(const Lanes<k>& x, Lanes<k>& y) const;
 };
 
 }  // namespace rhexis::linalg

@@ -15,7 +15,7 @@
 namespace rhexis::linalg {
 namespace {
 
-/// Rows that one thread takes at a time.
+/// Rows times lanes that one thread takes at a time.
 constexpr std::size_t kGrain = 16384;
 constexpr std::int32_t kPatchSize = 60;
 constexpr std::int32_t kMostPatches = 512;
@@ -48,8 +48,8 @@ ChebyshevInverse::ChebyshevInverse(const SymmetricCsr& C, double reduction) : ro
   double radius = 0.0;
   for (Eigen::Index i = 0; i < rows_; ++i) {
     double off = 0.0;
-    for (std::int32_t p = start_[at(i)]; p < start_[at(i) + 1]; ++p)
-      off += std::abs(exact.value[at(p)]) * exact.root[i] / exact.root[col_[at(p)]];
+    for (std::size_t p = width_ * at(i); p < width_ * (at(i) + 1); ++p)
+      off += std::abs(exact.value[p]) * exact.root[i] / exact.root[col_[p]];
     radius = std::max(radius, off);
   }
   RHEXIS_CHECK(radius < 1.0, "not diagonally dominant: {}", radius);
@@ -84,7 +84,6 @@ ChebyshevInverse::Scaled ChebyshevInverse::take_matrix(const SymmetricCsr& C) {
     if (i > 0 && patch[at(row)] != patch[at(row_of_[at(i) - 1])]) patch_start_.push_back(static_cast<std::int32_t>(i));
   }
   patch_start_.push_back(static_cast<std::int32_t>(rows_));
-  start_.assign(at(rows_) + 1, 0);
   const auto for_each_entry = [&](const auto& use) {
     for (Eigen::Index row = 0; row < rows_; ++row) {
       for (std::int32_t k = pattern.row_start[at(row)]; k + 1 < pattern.row_start[at(row) + 1]; ++k) {
@@ -92,18 +91,18 @@ ChebyshevInverse::Scaled ChebyshevInverse::take_matrix(const SymmetricCsr& C) {
       }
     }
   };
+  std::vector<std::size_t> used(at(rows_), 0);
   for_each_entry([&](std::int32_t i, std::int32_t j, double) {
-    ++start_[at(i) + 1];
-    ++start_[at(j) + 1];
+    width_ = std::max({width_, ++used[at(i)], ++used[at(j)]});
   });
-  for (std::size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
-  col_.resize(at(start_.back()));
-  exact.value.resize(col_.size());
-  std::vector<std::int32_t> next(start_.begin(), start_.end() - 1);
+  col_.resize(width_ * at(rows_));
+  for (std::size_t p = 0; p < col_.size(); ++p) col_[p] = static_cast<std::int32_t>(p / width_);
+  exact.value.assign(col_.size(), 0.0);
+  std::fill(used.begin(), used.end(), 0);
   for_each_entry([&](std::int32_t i, std::int32_t j, double value) {
     const double scaled = value * exact.root[i] * exact.root[j];
     for (const auto& [row, column] : {std::pair(i, j), std::pair(j, i)}) {
-      const auto to = at(next[at(row)]++);
+      const std::size_t to = width_ * at(row) + used[at(row)]++;
       col_[to] = column;
       exact.value[to] = scaled;
     }
@@ -125,8 +124,8 @@ void ChebyshevInverse::take_patches(Scaled& exact) {
   std::vector<Eigen::Triplet<double>> entries;
   for (Eigen::Index i = 0; i < rows_; ++i) {
     entries.emplace_back(i, patch[at(i)], weight[i]);
-    for (std::int32_t p = start_[at(i)]; p < start_[at(i) + 1]; ++p)
-      entries.emplace_back(i, patch[at(col_[at(p)])], exact.value[at(p)] * weight[col_[at(p)]]);
+    for (std::size_t p = width_ * at(i); p < width_ * (at(i) + 1); ++p)
+      if (exact.value[p] != 0.0) entries.emplace_back(i, patch[at(col_[p])], exact.value[p] * weight[col_[p]]);
   }
   exact.product.resize(rows_, count);
   exact.product.setFromTriplets(entries.begin(), entries.end());
@@ -171,7 +170,7 @@ double ChebyshevInverse::smallest_eigenvalue(const Scaled& exact) const {
   for (int k = 1; k <= kLanczosSteps; ++k) {
     for (Eigen::Index i = 0; i < rows_; ++i) {
       next[i] = v[i];
-      for (std::int32_t p = start_[at(i)]; p < start_[at(i) + 1]; ++p) next[i] += exact.value[at(p)] * v[col_[at(p)]];
+      for (std::size_t p = width_ * at(i); p < width_ * (at(i) + 1); ++p) next[i] += exact.value[p] * v[col_[p]];
     }
     project(next);
     alpha.push_back(v.dot(next));
@@ -189,85 +188,100 @@ double ChebyshevInverse::smallest_eigenvalue(const Scaled& exact) const {
   return estimate;
 }
 
-void ChebyshevInverse::solve_smooth(const Eigen::VectorXf& v, Work& work) const {
+template <int k>
+void ChebyshevInverse::solve_smooth(const SingleLanes<k>& v, WorkOf<k>& work) const {
   multiply_patches(weight_, v, work.coarse);
-  work.solved.noalias() = coarse_ * work.coarse;
+  solve_coarse<k>(work);
 }
 
-void ChebyshevInverse::solve_smooth_of_product(const Eigen::VectorXf& v, Work& work) const {
+template <int k>
+void ChebyshevInverse::solve_smooth_of_product(const SingleLanes<k>& v, WorkOf<k>& work) const {
   multiply_patches(near_, v, work.coarse);
-  for (const Far& far : far_) work.coarse[far.patch] += far.value * v[far.row];
-  work.solved.noalias() = coarse_ * work.coarse;
+  for (const Far& far : far_) work.coarse.row(far.patch) += far.value * v.row(far.row);
+  solve_coarse<k>(work);
 }
 
-void ChebyshevInverse::add_smooth(const Eigen::VectorXf& v, float part, const Eigen::VectorXf& coarse,
-                                  Eigen::VectorXf& to) const {
-  to.resize(rows_);
-  for (std::size_t k = 0; k < patches(); ++k) {
-    const std::int32_t begin = patch_start_[k];
-    const std::int32_t size = patch_start_[k + 1] - begin;
-    to.segment(begin, size) =
-        v.segment(begin, size) + (part * coarse[static_cast<Eigen::Index>(k)]) * weight_.segment(begin, size);
+template <int k>
+void ChebyshevInverse::add_smooth(const SingleLanes<k>& v, float part, const Patched<k>& coarse,
+                                  SingleLanes<k>& to) const {
+  to.resize(rows_, k);
+  for (std::size_t p = 0; p < patches(); ++p) {
+    const Eigen::Array<float, 1, k> scaled = part * coarse.row(static_cast<Eigen::Index>(p));
+    for (Eigen::Index i = patch_start_[p]; i < patch_start_[p + 1]; ++i)
+      to.row(i).array() = v.row(i).array() + weight_[i] * scaled;
   }
 }
 
-void ChebyshevInverse::subtract_product_of_smooth(const Eigen::VectorXf& coarse, Eigen::VectorXf& v) const {
-  for (std::size_t k = 0; k < patches(); ++k) {
-    const std::int32_t begin = patch_start_[k];
-    const std::int32_t size = patch_start_[k + 1] - begin;
-    v.segment(begin, size) -= coarse[static_cast<Eigen::Index>(k)] * near_.segment(begin, size);
+template <int k>
+void ChebyshevInverse::subtract_product_of_smooth(const Patched<k>& coarse, SingleLanes<k>& v) const {
+  for (std::size_t p = 0; p < patches(); ++p) {
+    for (Eigen::Index i = patch_start_[p]; i < patch_start_[p + 1]; ++i)
+      v.row(i) -= near_[i] * coarse.row(static_cast<Eigen::Index>(p));
   }
-  for (const Far& far : far_) v[far.row] -= far.value * coarse[far.patch];
+  for (const Far& far : far_) v.row(far.row) -= far.value * coarse.row(far.patch);
 }
 
 /// x = p(P M) residual, with P M v = M (v - Q M v): without P in every step the smooth part would come back through M.
 /// The residual, which P has been applied to, is used up.
-void ChebyshevInverse::iterate(Work& work) const {
-  Eigen::VectorXf& residual = work.residual;
-  work.step = residual / centre_;
+template <int k>
+void ChebyshevInverse::iterate(WorkOf<k>& work) const {
+  using Row = Eigen::Array<float, 1, k>;
+  work.step = work.residual / centre_;
   work.x = work.step;
   const float sigma = centre_ / half_width_;
   float rho = 1.0F / sigma;
-  for (int k = 1; k < steps_; ++k) {
-    solve_smooth_of_product(work.step, work);
-    add_smooth(work.step, -1.0F, work.solved, work.without_smooth);
+  for (int n = 1; n < steps_; ++n) {
+    solve_smooth_of_product<k>(work.step, work);
+    add_smooth<k>(work.step, -1.0F, work.solved, work.without_smooth);
     const float next = 1.0F / (2.0F * sigma - rho);
     const float along = next * rho;
     const float down = 2.0F * next / half_width_;
-    parallel_ranges(at(rows_), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(at(rows_), kGrain / k, [&](std::size_t begin, std::size_t end) {
+      const SingleLanes<k>& v = work.without_smooth;
       for (std::size_t row = begin; row < end; ++row) {
         const auto i = static_cast<Eigen::Index>(row);
-        residual[i] -= row_of_product(row, work.without_smooth);
-        work.step[i] = along * work.step[i] + down * residual[i];
-        work.x[i] += work.step[i];
+        Row product = v.row(i);
+        for (std::size_t p = width_ * row; p < width_ * (row + 1); ++p) product += value_[p] * v.row(col_[p]).array();
+        const Row residual = work.residual.row(i).array() - product;
+        const Row step = along * work.step.row(i).array() + down * residual;
+        work.residual.row(i) = residual;
+        work.step.row(i) = step;
+        work.x.row(i).array() += step;
       }
     });
     rho = next;
   }
 }
 
-void ChebyshevInverse::apply(const VectorX& b, VectorX& x, Work& work) const {
+template <int k>
+void ChebyshevInverse::apply_lanes(const Lanes<k>& b, Lanes<k>& x, WorkOf<k>& work) const {
   // In the scaled unknowns y = D^1/2 x: M y = c, c = D^-1/2 b.
-  work.residual.resize(rows_);
-  for (Eigen::Index i = 0; i < rows_; ++i) work.residual[i] = root_[i] * static_cast<float>(b[row_of_[at(i)]]);
-  x.resize(rows_);
-  if (col_.empty()) {
-    for (Eigen::Index i = 0; i < rows_; ++i) x[row_of_[at(i)]] = double{root_[i]} * work.residual[i];
-    return;
-  }
-  solve_smooth(work.residual, work);
+  work.residual.resize(rows_, k);
+  for (Eigen::Index i = 0; i < rows_; ++i)
+    work.residual.row(i) = root_[i] * b.row(row_of_[at(i)]).template cast<float>();
+  x.resize(rows_, k);
+  const auto scale_back = [&](const SingleLanes<k>& y) {
+    for (Eigen::Index i = 0; i < rows_; ++i)
+      x.row(row_of_[at(i)]) = double{root_[i]} * y.row(i).template cast<double>();
+  };
+  if (col_.empty()) return scale_back(work.residual);
+  solve_smooth<k>(work.residual, work);
   work.first = work.solved;
-  subtract_product_of_smooth(work.first, work.residual);  // (I - M Q) c
-  iterate(work);
-  solve_smooth_of_product(work.x, work);  // (I - Q M), and Q c
+  subtract_product_of_smooth<k>(work.first, work.residual);  // (I - M Q) c
+  iterate<k>(work);
+  solve_smooth_of_product<k>(work.x, work);  // (I - Q M), and Q c
   work.first -= work.solved;
-  add_smooth(work.x, 1.0F, work.first, work.step);
-  for (Eigen::Index i = 0; i < rows_; ++i) x[row_of_[at(i)]] = double{root_[i]} * work.step[i];
+  add_smooth<k>(work.x, 1.0F, work.first, work.step);
+  scale_back(work.step);
 }
+
+template void ChebyshevInverse::apply_lanes<1>(const VectorX&, VectorX&, WorkOf<1>&) const;
+template void ChebyshevInverse::apply_lanes<2>(const TwoLanes&, TwoLanes&, WorkOf<2>&) const;
+template void ChebyshevInverse::apply_lanes<4>(const FourLanes&, FourLanes&, WorkOf<4>&) const;
 
 std::size_t ChebyshevInverse::memory_bytes() const {
   return sizeof(float) * (value_.capacity() + 3 * at(rows_) + at(coarse_.size())) + sizeof(Far) * far_.capacity() +
-         sizeof(std::int32_t) * (start_.capacity() + col_.capacity() + row_of_.capacity());
+         sizeof(std::int32_t) * (col_.capacity() + row_of_.capacity());
 }
 
 }  // namespace rhexis::linalg

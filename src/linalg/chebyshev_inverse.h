@@ -20,6 +20,7 @@
 #include <Eigen/SparseCore>
 
 #include "base/vec.h"
+#include "linalg/lanes.h"
 #include "linalg/saddle_matrix.h"
 
 namespace rhexis::linalg {
@@ -32,11 +33,23 @@ class ChebyshevInverse {
   ChebyshevInverse(const SymmetricCsr& C, double reduction);
 
   [[nodiscard]] int steps() const { return steps_; }
+  /// Per patch, by lanes.
+  template <int k>
+  using Patched = Eigen::Matrix<float, Eigen::Dynamic, k>;
+  template <int k>
+  struct WorkOf {
+    SingleLanes<k> residual, step, x, without_smooth;
+    Patched<k> coarse, solved, first;
+  };
   struct Work {
-    Eigen::VectorXf residual, step, x, without_smooth, coarse, solved, first;
+    WorkOf<1> one;
+    WorkOf<2> two;
+    WorkOf<4> four;
   };
   /// x ~ C^-1 b; x may be b.
-  void apply(const VectorX& b, VectorX& x, Work& work) const;
+  void apply(const VectorX& b, VectorX& x, Work& work) const { apply_lanes<1>(b, x, work.one); }
+  void apply(const TwoLanes& b, TwoLanes& x, Work& work) const { apply_lanes<2>(b, x, work.two); }
+  void apply(const FourLanes& b, FourLanes& x, Work& work) const { apply_lanes<4>(b, x, work.four); }
   [[nodiscard]] std::size_t memory_bytes() const;
 
  private:
@@ -48,7 +61,7 @@ class ChebyshevInverse {
   /// In double, while it is taken.
   struct Scaled {
     VectorX root;                                          ///< D^-1/2
-    std::vector<double> value;                             ///< of M
+    std::vector<double> value;                             ///< of M, as value_
     Eigen::SparseMatrix<double, Eigen::RowMajor> product;  ///< M W
     Eigen::LLT<Eigen::MatrixXd> coarse;                    ///< of W^T M W
   };
@@ -57,36 +70,45 @@ class ChebyshevInverse {
   [[nodiscard]] double smallest_eigenvalue(const Scaled& exact) const;
   [[nodiscard]] std::size_t patches() const { return patch_start_.size() - 1; }
 
-  /// Row i of M x, M = D^-1/2 C D^-1/2.
-  [[nodiscard]] float row_of_product(std::size_t i, const Eigen::VectorXf& x) const {
-    float sum = x[static_cast<Eigen::Index>(i)];
-    for (std::int32_t p = start_[i]; p < start_[i + 1]; ++p)
-      sum += value_[static_cast<std::size_t>(p)] * x[col_[static_cast<std::size_t>(p)]];
-    return sum;
-  }
-  /// Per patch, the product of its parts of two vectors.
-  template <typename Vector>
-  void multiply_patches(const Vector& a, const Vector& b, Vector& sums) const {
-    sums.resize(static_cast<Eigen::Index>(patches()));
-    for (std::size_t k = 0; k < patches(); ++k) {
-      const std::int32_t begin = patch_start_[k];
-      const std::int32_t size = patch_start_[k + 1] - begin;
-      sums[static_cast<Eigen::Index>(k)] = a.segment(begin, size).dot(b.segment(begin, size));
+  /// Per patch, the products of its parts of a and the lanes of b.
+  template <typename Vector, typename Many, typename Sums>
+  void multiply_patches(const Vector& a, const Many& b, Sums& sums) const {
+    sums.resize(static_cast<Eigen::Index>(patches()), b.cols());
+    for (std::size_t p = 0; p < patches(); ++p) {
+      const std::int32_t begin = patch_start_[p];
+      const std::int32_t size = patch_start_[p + 1] - begin;
+      sums.row(static_cast<Eigen::Index>(p)).noalias() =
+          a.segment(begin, size).transpose().lazyProduct(b.middleRows(begin, size));
     }
   }
+  template <int k>
+  void apply_lanes(const Lanes<k>& b, Lanes<k>& x, WorkOf<k>& work) const;
   /// solved = (W^T M W)^-1 W^T v, or (W^T M W)^-1 W^T M v.
-  void solve_smooth(const Eigen::VectorXf& v, Work& work) const;
-  void solve_smooth_of_product(const Eigen::VectorXf& v, Work& work) const;
+  template <int k>
+  void solve_smooth(const SingleLanes<k>& v, WorkOf<k>& work) const;
+  template <int k>
+  void solve_smooth_of_product(const SingleLanes<k>& v, WorkOf<k>& work) const;
   /// to = v + part W coarse.
-  void add_smooth(const Eigen::VectorXf& v, float part, const Eigen::VectorXf& coarse, Eigen::VectorXf& to) const;
-  void subtract_product_of_smooth(const Eigen::VectorXf& coarse, Eigen::VectorXf& v) const;
-  void iterate(Work& work) const;
+  template <int k>
+  void add_smooth(const SingleLanes<k>& v, float part, const Patched<k>& coarse, SingleLanes<k>& to) const;
+  template <int k>
+  void subtract_product_of_smooth(const Patched<k>& coarse, SingleLanes<k>& v) const;
+  template <int k>
+  void solve_coarse(WorkOf<k>& work) const {  // lane by lane: narrow products of matrices are slower
+    work.solved.resize(work.coarse.rows(), k);
+    for (int lane = 0; lane < k; ++lane) work.solved.col(lane).noalias() = coarse_ * work.coarse.col(lane);
+  }
+  template <int k>
+  void iterate(WorkOf<k>& work) const;
 
   Eigen::Index rows_ = 0;
   // Rows patch by patch, so that a patch is a range and its rows are read together.
-  std::vector<std::int32_t> row_of_;       ///< of C
-  Eigen::VectorXf root_;                   ///< D^-1/2
-  std::vector<std::int32_t> start_, col_;  ///< both triangles without the diagonal, which is 1
+  std::vector<std::int32_t> row_of_;  ///< of C
+  Eigen::VectorXf root_;              ///< D^-1/2
+  // Both triangles without the diagonal, which is 1; as many entries to a row as the fullest has, those that it lacks
+  // are zeros on itself: the faces of a tet are four, and a loop of fixed length is twice as fast as one that is not.
+  std::size_t width_ = 0;
+  std::vector<std::int32_t> col_;
   std::vector<float> value_;
   std::vector<std::int32_t> patch_start_{0};
   Eigen::VectorXf weight_;             ///< of each row in its column of W, in the scaled unknowns: D^1/2

@@ -25,17 +25,22 @@ struct FrontKernels {
   void (*forward)(const double* L, int ld, int pivots, int boundary, double* r, int ldr, int columns);
   /// x_p = L_pp^-T (x_p - L_bp^T x_b); x over the pivots and the boundary below them.
   void (*backward)(const double* L, int ld, int pivots, int boundary, double* x);
-  /// W = [L_pp^-1; L_bp L_pp^-1] in single precision, (pivots + boundary) x pivots, of L with distance ld.
-  void (*invert_panel)(const double* L, int ld, int pivots, int boundary, float* W);
-  /// y = W x; W rows x columns with distance ld.
-  void (*multiply_single)(const float* W, int ld, int rows, int columns, const float* x, float* y);
-  /// y = W^T x; W ld x columns.
-  void (*multiply_transposed_single)(const float* W, int ld, int columns, const float* x, float* y);
+  /// W = [L_pp^-1; L_bp L_pp^-1] in single precision, (pivots + boundary) x pivots with distance ldw, of L with ld.
+  void (*invert_panel)(const double* L, int ld, int pivots, int boundary, float* W, int ldw);
+  /// Y = W X for 1, 2 or 4 columns of X and Y, which are ldx and ldy from one another; W rows x columns. `rows` and
+  /// all distances are multiples of kSinglePacket.
+  void (*multiply_single)(const float* W, int ld, int rows, int columns, int lanes, const float* X, int ldx, float* Y,
+                          int ldy);
+  /// Y = W^T X likewise; W rows x columns.
+  void (*multiply_transposed_single)(const float* W, int ld, int rows, int columns, int lanes, const float* X, int ldx,
+                                     float* Y, int ldy);
   /// to += from.
   void (*add)(double* to, const double* from, int count);
 };
 
 inline constexpr int kFactorWidth = 32;
+/// Single precision numbers in the widest vector of all instruction sets.
+inline constexpr int kSinglePacket = 16;
 
 /// "portable", "avx2" or "avx512"; nullptr where the processor or the build has none.
 [[nodiscard]] const FrontKernels* find_front_kernels(std::string_view name);

@@ -122,26 +122,102 @@ void backward(const double* L, int ld, int pivots, int boundary, double* x) {
   ConstMatrix(L, pivots, pivots, Eigen::OuterStride<>(ld)).transpose().triangularView<Eigen::Upper>().solveInPlace(top);
 }
 
-using SingleMatrix = Eigen::Map<const Eigen::MatrixXf, 0, Eigen::OuterStride<>>;
-
-void invert_panel(const double* L, int ld, int pivots, int boundary, float* W) {
+void invert_panel(const double* L, int ld, int pivots, int boundary, float* W, int ldw) {
   if (pivots == 0) return;
   const ConstMatrix panel(L, pivots + boundary, pivots, Eigen::OuterStride<>(ld));
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(pivots, pivots);
   panel.topRows(pivots).triangularView<Eigen::Lower>().solveInPlace(inverse);
-  Eigen::Map<Eigen::MatrixXf> out(W, pivots + boundary, pivots);
+  Eigen::Map<Eigen::MatrixXf, 0, Eigen::OuterStride<>> out(W, pivots + boundary, pivots, Eigen::OuterStride<>(ldw));
   out.topRows(pivots) = inverse.cast<float>();
   if (boundary > 0) out.bottomRows(boundary) = (panel.bottomRows(boundary) * inverse).eval().cast<float>();
 }
 
-void multiply_single(const float* W, int ld, int rows, int columns, const float* x, float* y) {
-  Eigen::Map<Eigen::VectorXf>(y, rows).noalias() =
-      SingleMatrix(W, rows, columns, Eigen::OuterStride<>(ld)) * Eigen::Map<const Eigen::VectorXf>(x, columns);
+#if defined(__AVX512F__)
+constexpr int kPacket = 16;
+constexpr int kRegisters = 24;  // for sums
+#elif defined(__AVX2__)
+constexpr int kPacket = 8;
+constexpr int kRegisters = 8;
+#else
+constexpr int kPacket = 4;
+constexpr int kRegisters = 8;
+#endif
+typedef float Packet __attribute__((vector_size(4 * kPacket)));
+typedef float PacketInMemory __attribute__((vector_size(4 * kPacket), aligned(4), may_alias));
+
+Packet load(const float* from) { return *reinterpret_cast<const PacketInMemory*>(from); }
+void store(Packet value, float* to) { *reinterpret_cast<PacketInMemory*>(to) = value; }
+float sum_of(Packet value) {
+  float part[kPacket];
+  store(value, part);
+  for (int width = kPacket / 2; width > 0; width /= 2) {
+    for (int i = 0; i < width; ++i) part[i] += part[i + width];
+  }
+  return part[0];
 }
 
-void multiply_transposed_single(const float* W, int ld, int columns, const float* x, float* y) {
-  Eigen::Map<Eigen::VectorXf>(y, columns).noalias() =
-      SingleMatrix(W, ld, columns, Eigen::OuterStride<>(ld)).transpose() * Eigen::Map<const Eigen::VectorXf>(x, ld);
+/// Some packets of rows at a time, whose sums stay in registers.
+template <int lanes, int packets>
+void multiply_rows(const float* W, int ld, int columns, const float* X, int ldx, float* Y, int ldy) {
+  Packet sum[packets][lanes] = {};
+  for (int j = 0; j < columns; ++j) {
+    const float* const w = W + static_cast<std::ptrdiff_t>(j) * ld;
+    for (int p = 0; p < packets; ++p) {
+      const Packet value = load(w + p * kPacket);
+      for (int l = 0; l < lanes; ++l) sum[p][l] += value * X[l * ldx + j];
+    }
+  }
+  for (int p = 0; p < packets; ++p) {
+    for (int l = 0; l < lanes; ++l) store(sum[p][l], Y + l * ldy + p * kPacket);
+  }
+}
+
+template <int lanes>
+void multiply_lanes(const float* W, int ld, int rows, int columns, const float* X, int ldx, float* Y, int ldy) {
+  constexpr int kTogether = kRegisters / lanes < 8 ? kRegisters / lanes : 8;
+  int i = 0;
+  for (; i + kTogether * kPacket <= rows; i += kTogether * kPacket)
+    multiply_rows<lanes, kTogether>(W + i, ld, columns, X, ldx, Y + i, ldy);
+  for (; i < rows; i += kPacket) multiply_rows<lanes, 1>(W + i, ld, columns, X, ldx, Y + i, ldy);
+}
+
+void multiply_single(const float* W, int ld, int rows, int columns, int lanes, const float* X, int ldx, float* Y,
+                     int ldy) {
+  if (lanes == 1) multiply_lanes<1>(W, ld, rows, columns, X, ldx, Y, ldy);
+  if (lanes == 2) multiply_lanes<2>(W, ld, rows, columns, X, ldx, Y, ldy);
+  if (lanes == 4) multiply_lanes<4>(W, ld, rows, columns, X, ldx, Y, ldy);
+}
+
+template <int lanes, int together>
+void multiply_columns(const float* W, int ld, int rows, const float* X, int ldx, float* Y, int ldy) {
+  Packet sum[together][lanes] = {};
+  for (int i = 0; i < rows; i += kPacket) {
+    for (int c = 0; c < together; ++c) {
+      const Packet value = load(W + static_cast<std::ptrdiff_t>(c) * ld + i);
+      for (int l = 0; l < lanes; ++l) sum[c][l] += value * load(X + l * ldx + i);
+    }
+  }
+  for (int c = 0; c < together; ++c) {
+    for (int l = 0; l < lanes; ++l) Y[l * ldy + c] = sum_of(sum[c][l]);
+  }
+}
+
+template <int lanes>
+void multiply_transposed_lanes(const float* W, int ld, int rows, int columns, const float* X, int ldx, float* Y,
+                               int ldy) {
+  constexpr int kTogether = kRegisters / lanes < 8 ? kRegisters / lanes : 8;
+  const auto column = [&](int j) { return W + static_cast<std::ptrdiff_t>(j) * ld; };
+  int j = 0;
+  for (; j + kTogether <= columns; j += kTogether)
+    multiply_columns<lanes, kTogether>(column(j), ld, rows, X, ldx, Y + j, ldy);
+  for (; j < columns; ++j) multiply_columns<lanes, 1>(column(j), ld, rows, X, ldx, Y + j, ldy);
+}
+
+void multiply_transposed_single(const float* W, int ld, int rows, int columns, int lanes, const float* X, int ldx,
+                                float* Y, int ldy) {
+  if (lanes == 1) multiply_transposed_lanes<1>(W, ld, rows, columns, X, ldx, Y, ldy);
+  if (lanes == 2) multiply_transposed_lanes<2>(W, ld, rows, columns, X, ldx, Y, ldy);
+  if (lanes == 4) multiply_transposed_lanes<4>(W, ld, rows, columns, X, ldx, Y, ldy);
 }
 
 void add(double* to, const double* from, int count) {

@@ -18,16 +18,18 @@ constexpr std::size_t kSharedFrom = std::size_t{1} << 18;
 constexpr std::size_t kSharedGrain = 128;
 
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+std::int32_t whole_packets(std::int32_t size) { return (size + kSinglePacket - 1) / kSinglePacket * kSinglePacket; }
 
 }  // namespace
 
-/// W of a front, by columns.
+/// W of a front, by columns; zero below it.
 struct FrontSolver::Panel {
   std::shared_ptr<const Front> front;
   std::vector<float> values;
   explicit Panel(std::shared_ptr<const Front> of) : front(std::move(of)) {
-    values.resize(at(front->size()) * at(front->pivots));
-    front_kernels().invert_panel(front->panel.get(), front->ld(), front->pivots, front->boundary(), values.data());
+    const std::int32_t ld = whole_packets(front->size());
+    values.assign(at(ld) * at(front->pivots), 0.0F);
+    front_kernels().invert_panel(front->panel.get(), front->ld(), front->pivots, front->boundary(), values.data(), ld);
   }
 };
 
@@ -44,20 +46,21 @@ FrontSolver::FrontSolver(const FrontTree& tree, const FrontSolver* before) {
     for (const std::int32_t component : core.direction.level(k)) {
       const Front& front = *core.front(component);
       step_of[at(component)] = static_cast<std::int32_t>(steps_.size());
-      steps_.push_back({front.pivots, front.size(), used, 0, 0});
-      used += front.size();
+      const std::int32_t ld = whole_packets(front.size());
+      steps_.push_back({front.pivots, front.size(), ld, static_cast<std::int32_t>(dofs_.size()), used, 0, 0});
+      used += ld;
       dofs_.insert(dofs_.end(), front.dofs.begin(), front.dofs.end());
       fronts.push_back(core.fronts[at(component)]);
     }
     level_start_.push_back(static_cast<std::int32_t>(steps_.size()));
   }
+  work_size_ = used;
   for (std::size_t s = 0; s < steps_.size(); ++s) {
     steps_[s].first_incoming = static_cast<std::int32_t>(incoming_.size());
     for (const linalg::Incoming& from : fronts[s]->incoming) {
-      const Step& other = steps_[at(step_of[at(from.component)])];
       const auto first_run = static_cast<std::int32_t>(runs_.size());
       runs_.insert(runs_.end(), from.runs.begin(), from.runs.end());
-      incoming_.push_back({other.work + other.pivots, first_run, static_cast<std::int32_t>(runs_.size())});
+      incoming_.push_back({step_of[at(from.component)], first_run, static_cast<std::int32_t>(runs_.size())});
     }
     steps_[s].last_incoming = static_cast<std::int32_t>(incoming_.size());
   }
@@ -80,62 +83,86 @@ void FrontSolver::for_each_of_level(std::size_t level, const Use& use) const {
   });
 }
 
-void FrontSolver::forward(std::size_t step, const VectorX& b, Work& work) const {
+template <int k>
+void FrontSolver::forward(std::size_t step, const Lanes<k>& b, Work& work) const {
   const Step& front = steps_[step];
-  float* const r = work.r.data() + front.work;
-  float* const w = work.w.data() + front.work;
-  const std::int32_t* const dof = dofs_.data() + front.work;
-  for (std::int32_t i = 0; i < front.pivots; ++i) r[i] = static_cast<float>(b[dof[i]]);
-  std::fill(r + front.pivots, r + front.size, 0.0F);
-  for (std::int32_t k = front.first_incoming; k < front.last_incoming; ++k) {
-    const Incoming& in = incoming_[at(k)];
-    const float* const left = work.r.data() + in.from;
-    for (std::int32_t n = in.first_run; n < in.last_run; ++n) {
-      const Run& run = runs_[at(n)];
-      for (std::int32_t i = 0; i < run.length; ++i) r[run.to + i] += left[run.from + i];
+  const std::int32_t ld = front.ld;
+  float* const r = work.r.data() + std::ptrdiff_t{k} * front.work;
+  float* const w = work.w.data() + std::ptrdiff_t{k} * front.work;
+  const std::int32_t* const dof = dofs_.data() + front.first;
+  for (std::int32_t i = 0; i < front.pivots; ++i) {
+    for (int lane = 0; lane < k; ++lane) r[lane * ld + i] = static_cast<float>(b(dof[i], lane));
+  }
+  for (int lane = 0; lane < k; ++lane) std::fill(r + lane * ld + front.pivots, r + (lane + 1) * ld, 0.0F);
+  for (std::int32_t n = front.first_incoming; n < front.last_incoming; ++n) {
+    const Incoming& in = incoming_[at(n)];
+    const Step& other = steps_[at(in.step)];
+    for (int lane = 0; lane < k; ++lane) {
+      const float* const left = work.r.data() + std::ptrdiff_t{k} * other.work + lane * other.ld + other.pivots;
+      float* const to = r + lane * ld;
+      for (std::int32_t m = in.first_run; m < in.last_run; ++m) {
+        const Run& run = runs_[at(m)];
+        for (std::int32_t i = 0; i < run.length; ++i) to[run.to + i] += left[run.from + i];
+      }
     }
   }
   const float* const W = panels_[step]->values.data();
   const auto product = [&](std::size_t begin, std::size_t end) {
-    front_kernels().multiply_single(W + begin, front.size, static_cast<int>(end - begin), front.pivots, r, w + begin);
+    front_kernels().multiply_single(W + begin, ld, static_cast<int>(end - begin), front.pivots, k, r, ld, w + begin,
+                                    ld);
   };
   if (panels_[step]->values.size() < kSharedFrom) {
-    product(0, at(front.size));
+    product(0, at(ld));
   } else {
-    parallel_ranges(at(front.size), kSharedGrain, product);
+    parallel_ranges(at(ld), kSharedGrain, product);
   }
-  std::copy(w, w + front.pivots, r);
-  for (std::int32_t i = front.pivots; i < front.size; ++i) r[i] -= w[i];
+  for (int lane = 0; lane < k; ++lane) {
+    float* const to = r + lane * ld;
+    const float* const from = w + lane * ld;
+    std::copy(from, from + front.pivots, to);
+    for (std::int32_t i = front.pivots; i < front.size; ++i) to[i] -= from[i];
+  }
 }
 
-void FrontSolver::backward(std::size_t step, VectorX& x, Work& work) const {
+template <int k>
+void FrontSolver::backward(std::size_t step, Lanes<k>& x, Work& work) const {
   const Step& front = steps_[step];
-  float* const r = work.r.data() + front.work;
-  float* const w = work.w.data() + front.work;
-  const std::int32_t* const dof = dofs_.data() + front.work;
-  for (std::int32_t i = front.pivots; i < front.size; ++i) r[i] = -static_cast<float>(x[dof[i]]);
+  const std::int32_t ld = front.ld;
+  float* const r = work.r.data() + std::ptrdiff_t{k} * front.work;
+  float* const w = work.w.data() + std::ptrdiff_t{k} * front.work;
+  const std::int32_t* const dof = dofs_.data() + front.first;
+  for (std::int32_t i = front.pivots; i < front.size; ++i) {
+    for (int lane = 0; lane < k; ++lane) r[lane * ld + i] = -static_cast<float>(x(dof[i], lane));
+  }
   const float* const W = panels_[step]->values.data();
   const auto product = [&](std::size_t begin, std::size_t end) {
-    front_kernels().multiply_transposed_single(W + begin * at(front.size), front.size, static_cast<int>(end - begin), r,
-                                               w + begin);
+    front_kernels().multiply_transposed_single(W + begin * at(ld), ld, ld, static_cast<int>(end - begin), k, r, ld,
+                                               w + begin, ld);
   };
   if (panels_[step]->values.size() < kSharedFrom) {
     product(0, at(front.pivots));
   } else {
     parallel_ranges(at(front.pivots), kSharedGrain, product);
   }
-  for (std::int32_t i = 0; i < front.pivots; ++i) x[dof[i]] = w[i];
+  for (std::int32_t i = 0; i < front.pivots; ++i) {
+    for (int lane = 0; lane < k; ++lane) x(dof[i], lane) = w[lane * ld + i];
+  }
 }
 
-void FrontSolver::solve(const VectorX& b, VectorX& x, Work& work) const {
-  RHEXIS_CHECK(b.size() == size_, "{} entries for {} dofs", b.size(), size_);
-  work.r.resize(static_cast<Eigen::Index>(dofs_.size()));
-  work.w.resize(static_cast<Eigen::Index>(dofs_.size()));
+template <int k>
+void FrontSolver::solve_lanes(const Lanes<k>& b, Lanes<k>& x, Work& work) const {
+  RHEXIS_CHECK(b.rows() == size_, "{} entries for {} dofs", b.rows(), size_);
+  work.r.resize(std::max(work.r.size(), k * work_size_));
+  work.w.resize(work.r.size());
   const std::size_t levels = level_start_.size() - 1;
-  for (std::size_t k = levels; k-- > 0;) for_each_of_level(k, [&](std::size_t s) { forward(s, b, work); });
-  x.setZero(size_);
-  for (std::size_t k = 0; k < levels; ++k) for_each_of_level(k, [&](std::size_t s) { backward(s, x, work); });
+  for (std::size_t n = levels; n-- > 0;) for_each_of_level(n, [&](std::size_t s) { forward<k>(s, b, work); });
+  x.setZero(size_, k);
+  for (std::size_t n = 0; n < levels; ++n) for_each_of_level(n, [&](std::size_t s) { backward<k>(s, x, work); });
 }
+
+void FrontSolver::solve(const VectorX& b, VectorX& x, Work& work) const { solve_lanes<1>(b, x, work); }
+void FrontSolver::solve(const TwoLanes& b, TwoLanes& x, Work& work) const { solve_lanes<2>(b, x, work); }
+void FrontSolver::solve(const FourLanes& b, FourLanes& x, Work& work) const { solve_lanes<4>(b, x, work); }
 
 std::size_t FrontSolver::memory_bytes() const {
   std::size_t bytes = sizeof(Step) * steps_.capacity() + sizeof(std::int32_t) * dofs_.capacity() +

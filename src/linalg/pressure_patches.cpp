@@ -98,21 +98,22 @@ void PressurePatches::correct(const SaddleMatrix& K, const FreeDofs& free, const
   const Eigen::Index columns = count();
   V_.setZero(K.displacement_unknowns(), columns);
   if (columns == 0) return;
+  Eigen::MatrixXd V(V_.rows(), columns);
   VectorX pressure(smooth_.rows());
-  VectorX force(V_.rows());
+  VectorX force(V.rows());
   for (Eigen::Index col = 0; col < columns; ++col) {
     pressure = smooth_.col(col);
     force.setZero();
     K.B.add_transposed(pressure, 1.0, force);
     clear_held(free, force);
-    V_.col(col) = force;
+    V.col(col) = force;
   }
-  Eigen::MatrixXd solved(V_.rows(), columns);
-  p_inverse(V_, solved);
+  Eigen::MatrixXd solved(V.rows(), columns);
+  p_inverse(V, solved);
   Eigen::MatrixXd inner = G_;
-  inner.noalias() += V_.transpose() * solved;
+  inner.noalias() += V.transpose() * solved;
   coarse_.compute(inner);
-  V_ = std::move(solved);
+  V_ = solved.cast<float>();
 }
 
 void PressurePatches::follow(std::span<const std::int32_t> copied, const FreeDofs& free) {
@@ -122,21 +123,31 @@ void PressurePatches::follow(std::span<const std::int32_t> copied, const FreeDof
   for (std::size_t i = 0; i < copied.size(); ++i)
     V_.middleRows<3>(3 * (nodes + static_cast<Eigen::Index>(i))) = V_.middleRows<3>(3 * Eigen::Index{copied[i]});
   for (Eigen::Index col = 0; col < V_.cols(); ++col) {
-    VectorX of = V_.col(col);
+    VectorX of = V_.col(col).cast<double>();
     clear_held(free, of);
-    V_.col(col) = of;
+    V_.col(col) = of.cast<float>();
   }
 }
 
-void PressurePatches::apply(const VectorX& r, VectorX& z) const {
+template <int k>
+void PressurePatches::apply_lanes(const Lanes<k>& r, Lanes<k>& z) const {
   if (count() == 0) return;
-  VectorX small = V_.transpose() * r;
-  coarse_.solveInPlace(small);
-  z.noalias() -= V_ * small;
+  Eigen::VectorXf lane(r.rows());
+  for (int l = 0; l < k; ++l) {
+    lane = r.col(l).template cast<float>();
+    VectorX small = (V_.transpose() * lane).template cast<double>();
+    coarse_.solveInPlace(small);
+    lane.noalias() = V_ * small.cast<float>();
+    z.col(l) -= lane.cast<double>();
+  }
 }
+template void PressurePatches::apply_lanes<1>(const VectorX&, VectorX&) const;
+template void PressurePatches::apply_lanes<2>(const TwoLanes&, TwoLanes&) const;
+template void PressurePatches::apply_lanes<4>(const FourLanes&, FourLanes&) const;
 
 std::size_t PressurePatches::memory_bytes() const {
-  return sizeof(double) * static_cast<std::size_t>(d_.size() + smooth_.size() + V_.size() + 2 * G_.size());
+  return sizeof(double) * static_cast<std::size_t>(d_.size() + smooth_.size() + 2 * G_.size()) +
+         sizeof(float) * static_cast<std::size_t>(V_.size());
 }
 
 }  // namespace rhexis::linalg

@@ -34,7 +34,9 @@ class PressurePatches {
   /// copy of. Copies that move as one are what P was, so that P~ stays definite: no softer anywhere than P has become.
   void follow(std::span<const std::int32_t> copied, const FreeDofs& free);
   /// From z = P^-1 r to z = P~^-1 r.
-  void apply(const VectorX& r, VectorX& z) const;
+  void apply(const VectorX& r, VectorX& z) const { apply_lanes<1>(r, z); }
+  void apply(const TwoLanes& r, TwoLanes& z) const { apply_lanes<2>(r, z); }
+  void apply(const FourLanes& r, FourLanes& z) const { apply_lanes<4>(r, z); }
 
   [[nodiscard]] Eigen::Index count() const { return smooth_.cols(); }
   /// Of D, m^3/Pa; empty without pressures.
@@ -42,10 +44,13 @@ class PressurePatches {
   [[nodiscard]] std::size_t memory_bytes() const;
 
  private:
+  template <int k>
+  void apply_lanes(const Lanes<k>& r, Lanes<k>& z) const;
+
   VectorX d_;
   Eigen::MatrixXd smooth_;              ///< E W, m x k
   Eigen::MatrixXd G_;                   ///< W^T E W, k x k
-  Eigen::MatrixXd V_;                   ///< P^-1 V, 3n x k
+  Eigen::MatrixXf V_;                   ///< P^-1 V, 3n x k: as exact as a solve with P is
   Eigen::LLT<Eigen::MatrixXd> coarse_;  ///< of G + V^T P^-1 V
 };
 

@@ -37,8 +37,12 @@ struct CouplingMatrix {
   [[nodiscard]] std::int32_t rows() const { return pattern ? pattern->rows() : 0; }
   /// p = B^T u.
   void multiply(const VectorX& u, VectorX& p) const;
+  template <int k>
+  void multiply(const Lanes<k>& u, Lanes<k>& p) const;
   /// u += scale * B p.
   void add_transposed(const VectorX& p, double scale, VectorX& u) const;
+  template <int k>
+  void add_transposed(const Lanes<k>& p, double scale, Lanes<k>& u) const;
 };
 
 /// Scalar symmetric matrix: the lower triangle with the diagonal last in each row.
@@ -53,6 +57,8 @@ struct SymmetricCsr {
   void multiply(const VectorX& x, VectorX& y) const;
   /// y += scale * C x.
   void add_product(const VectorX& x, double scale, VectorX& y) const;
+  template <int k>
+  void add_product(const Lanes<k>& x, double scale, Lanes<k>& y) const;
 };
 
 /// The skew part of the load stiffness, added to A by blocks of A's pattern: block (i, j) of the lower triangle is S,
@@ -71,6 +77,8 @@ struct SaddleMatrix {
   [[nodiscard]] std::int32_t pressure_unknowns() const { return C.rows(); }
   /// (yu, yp) = K (xu, xp), skew part included.
   void multiply(const VectorX& xu, const VectorX& xp, VectorX& yu, VectorX& yp) const;
+  template <int k>
+  void multiply(const Lanes<k>& xu, const Lanes<k>& xp, Lanes<k>& yu, Lanes<k>& yp) const;
 };
 
 /// Which displacement unknowns are solved for. Dof 3 * node + component.

@@ -13,6 +13,13 @@ bool all_finite(std::span<const double> values) {
   return sum == 0.0;
 }
 
+template <typename Vectors>
+void clear_held_rows(const FreeDofs& free, Vectors& u) {
+  for (std::size_t dof = 0; dof < free.index.size(); ++dof) {
+    if (free.index[dof] < 0) u.row(static_cast<Eigen::Index>(dof)).setZero();
+  }
+}
+
 }  // namespace
 
 void SaddleResidual::set_system(const SaddleMatrix& K, const FreeDofs& free) {
@@ -64,10 +71,8 @@ bool is_finite(const FreeDofs& free, const VectorX& bu, const VectorX& bp) {
   return sum == 0.0 && all_finite({bp.data(), static_cast<std::size_t>(bp.size())});
 }
 
-void clear_held(const FreeDofs& free, VectorX& u) {
-  for (std::size_t dof = 0; dof < free.index.size(); ++dof) {
-    if (free.index[dof] < 0) u[static_cast<Eigen::Index>(dof)] = 0.0;
-  }
-}
+void clear_held(const FreeDofs& free, VectorX& u) { clear_held_rows(free, u); }
+void clear_held(const FreeDofs& free, TwoLanes& u) { clear_held_rows(free, u); }
+void clear_held(const FreeDofs& free, FourLanes& u) { clear_held_rows(free, u); }
 
 }  // namespace rhexis::linalg

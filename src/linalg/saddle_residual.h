@@ -37,5 +37,7 @@ class SaddleResidual {
 
 /// Sets the held entries to zero.
 void clear_held(const FreeDofs& free, VectorX& u);
+void clear_held(const FreeDofs& free, TwoLanes& u);
+void clear_held(const FreeDofs& free, FourLanes& u);
 
 }  // namespace rhexis::linalg

@@ -10,8 +10,8 @@ Evaluation Model::tet_tangents(const State&, Scratch&, std::vector<double>&, std
 
 std::vector<double> Model::tet_volumes() const { RHEXIS_CHECK(false, "{} keeps no volumes", name()); }
 
-Mat3 Model::stress_of_tet(const State&, TetId, const Mat3&) const {
-  RHEXIS_CHECK(false, "{} has no stress of one tet", name());
+TetState Model::tet_state(const State&, TetId, const Mat3&) const {
+  RHEXIS_CHECK(false, "{} has no state of one tet by itself", name());
 }
 
 }  // namespace rhexis::model

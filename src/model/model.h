@@ -52,6 +52,13 @@ struct TetFields {
   std::vector<double> stress;  ///< Cauchy, 6 per tet: xx yy zz xy yz xz, Pa
 };
 
+/// One tet of a state.
+struct TetState {
+  Mat3 stress = Mat3::Zero();  ///< Cauchy, Pa
+  Mat3 P = Mat3::Zero();       ///< first Piola-Kirchhoff stress dW/dF, Pa; of `linear` the same as Cauchy's
+  double W = 0.0;              ///< stored energy per reference volume, J/m^3; of a mixed model its Lagrangian's density
+};
+
 class Model {
  public:
   virtual ~Model() = default;
@@ -86,8 +93,8 @@ class Model {
   /// Stored energy (the Lagrangian of the mixed models), J; for tests and line search.
   [[nodiscard]] virtual double energy(const State& state) const = 0;
   [[nodiscard]] virtual TetFields fields(const State& state) const = 0;
-  /// Cauchy stress of one tet whose deformation gradient is F, Pa. Not of mass-spring and taylor-hood: RHEXIS_CHECK.
-  [[nodiscard]] virtual Mat3 stress_of_tet(const State& state, TetId tet, const Mat3& F) const;
+  /// Of one tet whose deformation gradient is F. Not of mass-spring and taylor-hood: RHEXIS_CHECK.
+  [[nodiscard]] virtual TetState tet_state(const State& state, TetId tet, const Mat3& F) const;
   /// |V (J - 1)| and |R_lambda| scales for the convergence test of mixed models: the norm of V_e (J_e - 1).
   [[nodiscard]] virtual double volume_change_norm(const State&) const { return 0.0; }
   /// SPD stand-ins in the reference state for MINRES.

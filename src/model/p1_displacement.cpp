@@ -18,25 +18,33 @@ Mat3 isotropic(const Mat3& strain, double lame_lambda, double lame_mu) {
   return lame_lambda * strain.trace() * Mat3::Identity() + 2.0 * lame_mu * strain;
 }
 
-/// Small-strain stress.
-Mat3 cauchy_stress(const element::SmallStrain& m, const Mat3& F, double) {
-  return isotropic(0.5 * (F + F.transpose()) - Mat3::Identity(), m.lame_lambda, m.lame_mu);
+/// Where stress is referred to the current volume.
+TetState large_strain(const Mat3& F, const Mat3& P, double W) {
+  return {P * F.transpose() / std::max(std::abs(F.determinant()), kLeastVolumeRatio), P, W};
 }
 
-/// P F^T / J with P = 2 mu (F - R) + lambda tr(R^T F - I) R.
-Mat3 cauchy_stress(const element::Corotated& m, const Mat3& F, double J) {
+TetState tet_state_of(const element::SmallStrain& m, const Mat3& F) {
+  const Mat3 strain = 0.5 * (F + F.transpose()) - Mat3::Identity();
+  const Mat3 stress = isotropic(strain, m.lame_lambda, m.lame_mu);
+  return {stress, stress, 0.5 * stress.cwiseProduct(strain).sum()};
+}
+
+/// W = mu |F - R|^2 + lambda/2 tr(R^T F - I)^2, P = 2 mu (F - R) + lambda tr(R^T F - I) R.
+TetState tet_state_of(const element::Corotated& m, const Mat3& F) {
   double f[9], r[9];
   for (int i = 0; i < 9; ++i) f[i] = F(i / 3, i % 3);
   element::nearest_rotation(f, r);
   const Mat3 R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(r);
-  const Mat3 P = 2.0 * m.lame_mu * (F - R) + m.lame_lambda * ((R.transpose() * F).trace() - 3.0) * R;
-  return P * F.transpose() / std::max(std::abs(J), kLeastVolumeRatio);
+  const double stretch = (R.transpose() * F).trace() - 3.0;
+  return large_strain(F, 2.0 * m.lame_mu * (F - R) + m.lame_lambda * stretch * R,
+                      m.lame_mu * (F - R).squaredNorm() + 0.5 * m.lame_lambda * stretch * stretch);
 }
 
-/// F S F^T / J.
-Mat3 cauchy_stress(const material::StVenantKirchhoffLaw& m, const Mat3& F, double J) {
+/// W = S : E / 2, P = F S.
+TetState tet_state_of(const material::StVenantKirchhoffLaw& m, const Mat3& F) {
   const Mat3 E = 0.5 * (F.transpose() * F - Mat3::Identity());
-  return F * isotropic(E, m.lame_lambda, m.lame_mu) * F.transpose() / std::max(std::abs(J), kLeastVolumeRatio);
+  const Mat3 S = isotropic(E, m.lame_lambda, m.lame_mu);
+  return large_strain(F, F * S, 0.5 * S.cwiseProduct(E).sum());
 }
 
 template <class Response>
@@ -89,12 +97,10 @@ class P1Displacement final : public P1Model {
 
   TetFields fields(const State& state) const override {
     return collect_fields(state.u,
-                          [&](std::size_t, const Mat3& F, double J) { return cauchy_stress(response_, F, J); });
+                          [&](std::size_t, const Mat3& F, double) { return tet_state_of(response_, F).stress; });
   }
 
-  Mat3 stress_of_tet(const State&, TetId, const Mat3& F) const override {
-    return cauchy_stress(response_, F, F.determinant());
-  }
+  TetState tet_state(const State&, TetId, const Mat3& F) const override { return tet_state_of(response_, F); }
 
   /// All three have the same stiffness at rest.
   linalg::BlockPreconditioner preconditioner() const override {

@@ -37,6 +37,7 @@ class P1Hyperelastic final : public P1Model {
         own_(own),
         law_(law),
         shear_modulus_(settings.law.shear_modulus()),
+        kappa_(settings.law.kappa),
         coupling_(make_coupling_pattern(mesh)),
         C_(make_pressure_matrix(mesh, settings.law.kappa, settings.beta, left_out)) {
     volume_.setZero(static_cast<Eigen::Index>(mesh.tet_count()));
@@ -106,14 +107,29 @@ class P1Hyperelastic final : public P1Model {
   }
 
   TetFields fields(const State& state) const override {
-    TetFields out =
-        collect_fields(state.u, [&](std::size_t tet, const Mat3& F, double J) { return cauchy(state, tet, F, J); });
+    TetFields out = collect_fields(
+        state.u, [&](std::size_t tet, const Mat3& F, double) { return tet_state(state, TetId(tet), F).stress; });
     out.lambda.assign(state.lambda.begin(), state.lambda.end());
     return out;
   }
 
-  Mat3 stress_of_tet(const State& state, TetId tet, const Mat3& F) const override {
-    return cauchy(state, tet.index(), F, F.determinant());
+  /// sigma = F S F^T / J + lambda I, of which the first part has no trace, so that lambda is the mean;
+  /// P = J sigma F^-T and W = W_iso + lambda (J - 1) - lambda^2 / (2 kappa), the density of the Lagrangian (2).
+  TetState tet_state(const State& state, TetId tet, const Mat3& F) const override {
+    double f[9];
+    for (int i = 0; i < 9; ++i) f[i] = F(i / 3, i % 3);
+    const double J = F.determinant();
+    const material::Deformation<double> deformation = material::deformation_of(f, J);
+    const material::Sym<double> s = law_.stress(deformation);
+    Mat3 S;
+    S << s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz;
+    const Mat3 isochoric = F * S;
+    const double lambda = state.lambda[static_cast<Eigen::Index>(tet.index())];
+    TetState out;
+    out.stress = isochoric * F.transpose() / J + lambda * Mat3::Identity();
+    out.P = isochoric + lambda * J * F.inverse().transpose();
+    out.W = law_.energy(deformation) + lambda * (J - 1.0) - 0.5 * lambda * lambda / kappa_;
+    return out;
   }
 
   double volume_change_norm(const State& state) const override {
@@ -145,19 +161,10 @@ class P1Hyperelastic final : public P1Model {
   }
 
  private:
-  /// sigma = F S F^T / J + lambda I; the first part has no trace, so that lambda is the mean.
-  Mat3 cauchy(const State& state, std::size_t tet, const Mat3& F, double J) const {
-    double f[9];
-    for (int i = 0; i < 9; ++i) f[i] = F(i / 3, i % 3);
-    const material::Sym<double> s = law_.stress(material::deformation_of(f, J));
-    Mat3 S;
-    S << s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz;
-    return F * S * F.transpose() / J + state.lambda[static_cast<Eigen::Index>(tet)] * Mat3::Identity();
-  }
-
   const element::MixedKernels<Law>& own_;
   Law law_;
   double shear_modulus_ = 0.0;                          ///< Pa
+  double kappa_ = 0.0;                                  ///< Pa
   std::shared_ptr<const linalg::CsrPattern> coupling_;  ///< of B^T
   linalg::SymmetricCsr C_;                              ///< diag(V) / kappa + K_S
   VectorX volume_;                                      ///< per tet, m^3, zero where left out

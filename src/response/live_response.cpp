@@ -245,7 +245,7 @@ DeformedTet LiveResponse::deformed(TetId tet) const {
   for (std::size_t a = 0; a < 4; ++a) u[a] = state().u.segment<3>(3 * Eigen::Index{mesh.tet(tet)[a].value()});
   DeformedTet out;
   out.F += element::displacement_gradient(element::make_linear_tet(mesh::corners(mesh, tet)), u);
-  out.stress = model_->stress_of_tet(state(), tet, out.F);
+  out.state = model_->tet_state(state(), tet, out.F);
   return out;
 }
 

@@ -15,6 +15,7 @@
 
 #include "base/vec.h"
 #include "mesh/torn_mesh.h"
+#include "model/model.h"
 #include "response/contact.h"
 
 namespace rhexis::response {
@@ -73,8 +74,8 @@ struct MoveReport {
 
 /// A tet of a body of large strain.
 struct DeformedTet {
-  Mat3 F = Mat3::Identity();   ///< deformation gradient
-  Mat3 stress = Mat3::Zero();  ///< Cauchy, Pa
+  Mat3 F = Mat3::Identity();  ///< deformation gradient
+  model::TetState state;
 };
 
 class Response {

@@ -341,7 +341,7 @@ Section fracture() {
                .kind = Kind::number,
                .unit = "N/m",
                .range = within(1e-9, 1e12),
-               .doc = "Energy release per area at which the body tears, in place of `strength`. Of model `linear`."},
+               .doc = "Energy release per area at which the body tears, in place of `strength`."},
               {.name = "advance_threshold",
                .kind = Kind::number,
                .unit = "Pa",
@@ -358,7 +358,8 @@ Section fracture() {
                .unit = "m",
                .range = kLength,
                .otherwise = "four mean edge lengths",
-               .doc = "Radius of the local object, the first and the least."},
+               .doc = "Radius of the local object, the first and the least. With a `toughness` four mean edge lengths "
+                      "or more."},
               {.name = "incision",
                .kind = Kind::choice,
                .fallback = "\"keep-nodes\"",

@@ -32,11 +32,6 @@ Expected<void> check_linear(const Scene& scene) {
 /// What a body of large strain does not have, whoever asks.
 Expected<void> check_large_strain(const Scene& scene) {
   if (scene.model.kind == model::ModelKind::linear || !model::is_live(scene.model.kind)) return {};
-  if (scene.fracture && scene.fracture->toughness)
-    return scene.fracture->place.fail(
-        fmt::format("a toughness is held against the energy release of small strains, not of model {}",
-                    model_name(scene)),
-        "a strength");
   if (scene.interaction.blend_contact && scene.interaction.place)
     return scene.interaction.place->fail(
         fmt::format("contact \"blend\" adds up reactions, which model {} does not allow", model_name(scene)),

@@ -1,5 +1,8 @@
 #include "session/start.h"
 
+#include <algorithm>
+#include <vector>
+
 #include "session/scene_record.h"
 
 namespace rhexis::session {
@@ -61,7 +64,10 @@ Expected<TearStart> start_tear(const scene::TearProblem& problem, response::Shar
     start.warnings.push_back(placed(problem.cracks.front().place,
                                     fmt::format("the cracks leave {} of {} tets without support: they are frozen",
                                                 frozen, problem.mesh.tet_count())));
+  std::vector<Vec3> tried;  // taking hold of a soft body is work for a second
   for (const scene::PullSettings& pull : problem.pulls) {
+    if (std::find(tried.begin(), tried.end(), pull.at) != tried.end()) continue;
+    tried.push_back(pull.at);
     if (const Expected<void> holds = tear.grasp(pull.at); !holds)
       return pull.place.fail(holds.error().what, holds.error().remedy);
     const double away = (tear.hand().point().position - pull.at).norm();

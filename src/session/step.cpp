@@ -2,12 +2,12 @@
 // object; update the response; and again, until the stress is below the strength.
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "base/check.h"
 #include "base/clock.h"
-#include "fracture/energy_release.h"
 #include "session/tear_session.h"
 
 namespace rhexis::session {
@@ -87,17 +87,28 @@ std::optional<TearSession::Judged> TearSession::judge(std::size_t crack) const {
   Judged out;
   if (settings_.toughness) {
     const std::vector<double> release = fracture::energy_release(
-        body(), settings_.body.elastic, front, local.tets(), local.gradients(),
-        {fracture::kInnerEdges * mean_edge(), fracture::kOuterEdges * mean_edge()}, body_force_);
+        body(), front, energies(local), {fracture::kInnerEdges * mean_edge(), fracture::kOuterEdges * mean_edge()},
+        body_force_);
     for (std::size_t k = 0; k < judgements.size(); ++k) {
       judgements[k] = fracture::by_toughness(judgements[k], release[k], *settings_.toughness, mean_edge());
-      out.value = std::max(out.value, release[k]);
+      if (std::isfinite(release[k])) out.value = std::max(out.value, release[k]);
     }
   }
   const std::optional<fracture::Advance> advance = fracture::plan_advance(front, judgements, torn_.surroundings());
   if (!advance) return std::nullopt;
   out.advance = *advance;
   if (!settings_.toughness) out.value = advance->value;
+  return out;
+}
+
+std::vector<fracture::EnergyTet> TearSession::energies(const fracture::LocalObject& local) const {
+  if (is_linear()) return fracture::small_strain_energies(settings_.body.elastic, local.tets(), local.gradients());
+  std::vector<fracture::EnergyTet> out;
+  out.reserve(local.tets().size());
+  for (const TetId tet : local.tets()) {
+    const response::DeformedTet deformed = response_->deformed(tet);
+    out.push_back({tet, deformed.F - Mat3::Identity(), deformed.state.P, deformed.state.W});
+  }
   return out;
 }
 

@@ -25,7 +25,9 @@ TearSession::TearSession(const mesh::TetMesh& mesh, TearSettings settings)
     : settings_(std::move(settings)),
       torn_(mesh, held_dofs(settings_.body.supports), settings_.incision),
       hand_(settings_.contact) {
-  if (settings_.local_radius <= 0.0) settings_.local_radius = kLocalRadius * mean_edge();
+  // A toughness reads a ring around the front, which a smaller local object would cut off.
+  if (settings_.local_radius <= 0.0 || settings_.toughness)
+    settings_.local_radius = std::max(settings_.local_radius, kLocalRadius * mean_edge());
   if (settings_.criterion.empty())
     settings_.criterion = torn_.surroundings().is_plate() ? "maximum-principal" : "maximum-hoop";
   body_force_ = settings_.body.density * settings_.body.gravity;
@@ -199,12 +201,12 @@ void TearSession::by_basis(response::ForceBasis& basis, const response::ForceBas
 
 void TearSession::set_own_stress(fracture::TetStress& tet) const {
   const response::DeformedTet deformed = response_->deformed(tet.tet);
-  fracture::set_turned_back(tet, deformed.F, deformed.stress);
+  fracture::set_turned_back(tet, deformed.F, deformed.state.stress);
 }
 
 Mat3 TearSession::stress(TetId tet, const VectorX& u) const {
   return is_linear() ? fracture::stress_of(body(), settings_.body.elastic, tet, u).stress
-                     : response_->deformed(tet).stress;
+                     : response_->deformed(tet).state.stress;
 }
 
 void TearSession::add_local_objects(VectorX& u) const {

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "fracture/criterion.h"
+#include "fracture/energy_release.h"
 #include "fracture/local_object.h"
 #include "fracture/path.h"
 #include "fracture/path_start.h"
@@ -117,6 +118,7 @@ class TearSession {
   };
   void tear(TickReport& report, const Observer& observer, int most_advances);
   [[nodiscard]] std::optional<Judged> judge(std::size_t crack) const;
+  [[nodiscard]] std::vector<fracture::EnergyTet> energies(const fracture::LocalObject& local) const;
   bool run_on(std::size_t crack, Judged judged, TickReport& report, const Observer& observer);
   bool start_crack(TickReport& report, const Observer& observer);
   /// Of cracks that begin.

@@ -22,12 +22,8 @@ constexpr double kGrowth = 4.0;
 /// Of worn_answer: the residual to which Z is solved for when the hand takes hold, and where it stands still.
 constexpr double kStillAnswer = 0.2;
 constexpr int kMostFirstIterations = 200;
-/// Solves of a column of Z, each from what the one before has left, at most.
-constexpr int kAnswerRounds = 4;
 /// Of the body's size: what takes less force to move the hand by is near to rest, and a residual is held against that.
 constexpr double kSmallMove = 0.01;
-/// Relative residual of a column of Z with which it is none; it is solved for carefully then.
-constexpr double kNoAnswer = 0.5;
 /// Of a step that is to lessen the energy.
 constexpr int kEnergyHalvings = 12;
 /// Frames in a row that are late, or do not end a time step, and do not lessen the residual by kProgress, after which
@@ -97,18 +93,11 @@ void LiveEquilibrium::follow(std::shared_ptr<const model::Model> model, model::L
   linear_.follow(model_, free_, state_, torn);
   make_room();
   if (!held_) return;
-  for (VectorX& u : answer_u_) {
-    const Eigen::Index nodes = u.size() / 3;
-    u.conservativeResize(state_.u.size());
-    for (std::size_t i = 0; i < torn.copied.size(); ++i)
-      u.segment<3>(3 * (nodes + static_cast<Eigen::Index>(i))) = u.segment<3>(3 * Eigen::Index{torn.copied[i]});
-  }
-  for (const std::int32_t parent : torn.copied)
-    answer_rotation_.push_back(answer_rotation_[static_cast<std::size_t>(parent)]);
-  build_tangent();
+  answer_.follow(torn.copied);
   linear_.set_constraint(held_);
-  turn_answers();
-  for (int j = 0; j < 3; ++j) refresh_answer(j, options_.worn_answer, options_.iterations);
+  build_tangent();
+  answer_.turn(linear_, free_);
+  refresh_answer(options_.worn_answer, options_.iterations);
   update_compliance();
   now_ = evaluate(state_);
   correct_force();
@@ -149,75 +138,15 @@ void LiveEquilibrium::build_tangent() {
   linear_.set_tangent(tangent_, state_);
 }
 
-/// K dz = N_j - K z.
-int LiveEquilibrium::refresh_answer(int column, double tolerance, int most) {
-  VectorX& u = answer_u_[static_cast<std::size_t>(column)];
-  VectorX& lambda = answer_lambda_[static_cast<std::size_t>(column)];
-  size_.set_system(tangent_, free_);
-  int iterations = 0;
-  bool careful = false;
-  // The polynomial for C^-1 leaves something of the pressure's row: once more from what is left.
-  double before = std::numeric_limits<double>::infinity();
-  for (int round = 0;; ++round) {
-    rhs_u_.setZero();
-    rhs_lambda_.setZero();
-    held_->add(Vec3::Unit(column), rhs_u_);
-    double left = size_.measure(rhs_u_, rhs_lambda_, u, lambda) / held_->weight.norm();
-    if (round == 0 && !(left < 1.0)) {  // worse than none
-      linear_.first_answer(column, u, lambda);
-      left = size_.measure(rhs_u_, rhs_lambda_, u, lambda) / held_->weight.norm();
-    }
-    if (round > 0 && !(left < before)) {  // near where the body gives way
-      u -= du_;
-      lambda -= dlambda_;
-      worn_ = true;
-      if (before < kNoAnswer || careful) return 0;  // as it was: another frame like it would do nothing else
-      careful = true;
-      most += iterations;
-      before = std::numeric_limits<double>::infinity();
-      continue;
-    }
-    if (left <= tolerance || iterations >= most || round == kAnswerRounds) break;
-    before = left;
-    iterations += linear_
-                      .solve(LiveLinear::Point::free, size_.u(), size_.p(), std::min(0.5, 0.5 * tolerance / left),
-                             most - iterations, careful, du_, dlambda_)
-                      .iterations;
-    if (!du_.allFinite() || !dlambda_.allFinite()) break;
-    u += du_;
-    lambda += dlambda_;
-  }
-  return iterations;
-}
-
-/// Z as it would be of a body that has done nothing since but turn: T Z R^T, R the turn of the point.
-void LiveEquilibrium::turn_answers() {
-  const std::vector<Mat3>& now = linear_.rotation();
-  Mat3 of_point = Mat3::Zero();
-  for (int k = 0; k < held_->count; ++k) {
-    const auto node = static_cast<std::size_t>(held_->node[static_cast<std::size_t>(k)]);
-    of_point += held_->weight[k] * now[node] * answer_rotation_[node].transpose();
-  }
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    const Mat3 turn = now[i] * answer_rotation_[i].transpose();
-    Mat3 Z;
-    for (std::size_t j = 0; j < 3; ++j)
-      Z.col(static_cast<Eigen::Index>(j)) = answer_u_[j].segment<3>(static_cast<Eigen::Index>(3 * i));
-    Z = (turn * Z * of_point.transpose()).eval();
-    for (std::size_t j = 0; j < 3; ++j)
-      answer_u_[j].segment<3>(static_cast<Eigen::Index>(3 * i)) = Z.col(static_cast<Eigen::Index>(j));
-  }
-  for (VectorX& column : answer_u_) linalg::clear_held(free_, column);
-  for (Eigen::Index p = 0; p < answer_lambda_[0].size(); ++p) {
-    const Vec3 row = of_point * Vec3(answer_lambda_[0][p], answer_lambda_[1][p], answer_lambda_[2][p]);
-    for (std::size_t j = 0; j < 3; ++j) answer_lambda_[j][p] = row[static_cast<Eigen::Index>(j)];
-  }
-  answer_rotation_ = now;
+int LiveEquilibrium::refresh_answer(double tolerance, int most) {
+  const PointAnswer::Report report =
+      answer_.refresh(tangent_, free_, linear_, {.residual = tolerance, .iterations = most});
+  worn_ = worn_ || report.worn;
+  return report.iterations;
 }
 
 void LiveEquilibrium::update_compliance() {
-  Mat3 C;
-  for (int j = 0; j < 3; ++j) C.col(j) = held_->of(answer_u_[static_cast<std::size_t>(j)]);
+  const Mat3 C = answer_.compliance();
   if (!C.inverse().allFinite()) return;  // that of before, until there is an answer
   compliance_ = 0.5 * (C + C.transpose());
   stiffness_ = compliance_.inverse();
@@ -234,15 +163,11 @@ void LiveEquilibrium::hold(const HeldPoint& point) {
   }
   held_ = point;
   small_force_ = 0.0;
-  linear_.set_constraint(held_);
   force_.setZero();
+  linear_.set_constraint(held_);
   build_tangent();
-  for (int j = 0; j < 3; ++j) {
-    answer_lambda_[static_cast<std::size_t>(j)].resize(state_.lambda.size());
-    linear_.first_answer(j, answer_u_[static_cast<std::size_t>(j)], answer_lambda_[static_cast<std::size_t>(j)]);
-    refresh_answer(j, kStillAnswer * options_.worn_answer, kMostFirstIterations);
-  }
-  answer_rotation_ = linear_.rotation();
+  answer_.begin(point, linear_);
+  refresh_answer(kStillAnswer * options_.worn_answer, kMostFirstIterations);
   update_compliance();
   now_ = evaluate(state_);
 }
@@ -306,12 +231,7 @@ LiveFrame LiveEquilibrium::settle() {
 /// f + C^-1 Z^T r, r the residual of the state with its multiplier; f alone while Z is none, where the tangent has no
 /// answer.
 void LiveEquilibrium::correct_force() {
-  Vec3 work;
-  for (int j = 0; j < 3; ++j) {
-    const auto k = static_cast<std::size_t>(j);
-    work[j] = answer_u_[k].dot(residual_.u) + answer_lambda_[k].dot(residual_.lambda);
-  }
-  const Vec3 corrected = multiplier_ + stiffness_ * work;
+  const Vec3 corrected = multiplier_ + stiffness_ * answer_.dot(residual_);
   force_ = corrected.allFinite() ? corrected : multiplier_;
 }
 
@@ -323,10 +243,7 @@ bool LiveEquilibrium::follow(const Vec3& hand, LiveFrame& frame) {
   for (int halving = 0; halving <= kHalvings; ++halving) {
     const Vec3 df = std::ldexp(1.0, -halving) * (from_gap_ * gap);
     trial_ = state_;
-    for (int j = 0; j < 3; ++j) {
-      trial_.u += df[j] * answer_u_[static_cast<std::size_t>(j)];
-      trial_.lambda += df[j] * answer_lambda_[static_cast<std::size_t>(j)];
-    }
+    answer_.add(df, trial_);
     next = evaluate(trial_);
     if (!is_admissible(next)) continue;
     frame.reached = halving == 0;
@@ -343,16 +260,33 @@ bool LiveEquilibrium::follow(const Vec3& hand, LiveFrame& frame) {
   return false;
 }
 
+/// For (du, dlambda), with the point where it is; the first one of a frame brings a column of Z along.
+LiveSolve LiveEquilibrium::solve_correction(int most, bool careful, LiveFrame& frame) {
+  rhs_u_ = -residual_.u;
+  rhs_lambda_ = -residual_.lambda;
+  const LiveOrder order{.point = Point::fixed, .tolerance = options_.forcing, .most = most, .careful = careful};
+  if (held_ && frame.linear_iterations == 0) {
+    PointAnswer::Beside beside{order, rhs_u_, rhs_lambda_, du_, dlambda_, {}};
+    const PointAnswer::Report report =
+        answer_.refresh(next_column_, tangent_, free_, linear_,
+                        {.residual = options_.worn_answer, .iterations = options_.iterations}, beside);
+    next_column_ = (next_column_ + 1) % 3;
+    worn_ = worn_ || report.worn;
+    frame.linear_iterations = report.iterations;
+    return beside.solve;
+  }
+  const LiveSolve solve = linear_.solve(order, rhs_u_, rhs_lambda_, du_, dlambda_);
+  frame.linear_iterations += solve.iterations;
+  return solve;
+}
+
 /// One Newton correction that leaves the point where it is. False: none was taken.
 bool LiveEquilibrium::correct(LiveFrame& frame) {
   build_tangent();
+  if (held_) answer_.turn(linear_, free_);
   const int most = (now_.relative > options_.late ? kLateIterations : 1) * options_.iterations;
   for (const bool careful : {false, true}) {
-    rhs_u_ = -residual_.u;
-    rhs_lambda_ = -residual_.lambda;
-    const LiveSolve solve =
-        linear_.solve(LiveLinear::Point::fixed, rhs_u_, rhs_lambda_, options_.forcing, most, careful, du_, dlambda_);
-    frame.linear_iterations += solve.iterations;
+    const LiveSolve solve = solve_correction(most, careful, frame);
     if (iterations_when_new_ == 0) iterations_when_new_ = std::max(1, solve.iterations);
     const bool has_haste = inertia_ || (held_ && now_.relative <= options_.late);
     const int worn_from = has_haste ? iterations_when_new_ + kWornMore : kWornIterations;
@@ -407,19 +341,6 @@ double LiveEquilibrium::stored_energy(const model::State& state) {
   return model_->energy(state) + linear_.energy_of_pressure(residual_.lambda);
 }
 
-/// One column while the body moves, which turns them all; all of them, and further, where there is time.
-void LiveEquilibrium::refresh_answers(LiveFrame& frame) {
-  if (frame.corrections > 0) {
-    turn_answers();
-    next_column_ = (next_column_ + 1) % 3;
-    frame.linear_iterations += refresh_answer(next_column_, options_.worn_answer, options_.iterations);
-  } else {
-    for (int j = 0; j < 3; ++j)
-      frame.linear_iterations += refresh_answer(j, kStillAnswer * options_.worn_answer, options_.iterations);
-  }
-  update_compliance();
-}
-
 /// A state that does not find back is given up for the last one that was near to equilibrium, or from which it set out;
 /// and so is the motion of a body whose time step does not end. That goes back to where its step began at the most.
 void LiveEquilibrium::keep_good(LiveFrame& frame) {
@@ -469,7 +390,11 @@ LiveFrame LiveEquilibrium::advance(const Vec3* hand) {
     frame.gave_up = !held_ && frame.corrections == 0;  // nothing else will move it
     break;
   }
-  if (held_) refresh_answers(frame);
+  if (held_) {
+    if (frame.corrections == 0)  // there is time to bring Z further
+      frame.linear_iterations += refresh_answer(kStillAnswer * options_.worn_answer, options_.iterations);
+    update_compliance();
+  }
   keep_good(frame);
   if (held_) correct_force();
   if (worn_) linear_.refresh(state_);

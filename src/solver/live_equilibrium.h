@@ -25,6 +25,7 @@
 #include "model/model.h"
 #include "solver/inertia.h"
 #include "solver/live_linear.h"
+#include "solver/point_answer.h"
 
 namespace rhexis::solver {
 
@@ -127,10 +128,9 @@ class LiveEquilibrium {
   Trial evaluate(const model::State& state);
   [[nodiscard]] bool is_admissible(const Trial& trial) const;
   void build_tangent();
-  /// Brings a column of Z to a relative residual; gives the iterations that it took.
-  int refresh_answer(int column, double tolerance, int most);
-  void refresh_answers(LiveFrame& frame);
-  void turn_answers();
+  /// Brings Z to a relative residual; gives the iterations that it took.
+  int refresh_answer(double tolerance, int most);
+  LiveSolve solve_correction(int most, bool careful, LiveFrame& frame);
   void update_compliance();
   void correct_force();
 
@@ -142,7 +142,6 @@ class LiveEquilibrium {
   model::State state_;
   std::optional<Inertia> inertia_;
   linalg::SaddleMatrix tangent_;
-  linalg::SaddleResidual size_;
   LiveLinear linear_;
 
   Vec3 multiplier_ = Vec3::Zero();  ///< N, that goes with the state
@@ -152,12 +151,11 @@ class LiveEquilibrium {
   VectorX external_, internal_;  ///< N
 
   std::optional<HeldPoint> held_;
-  std::array<VectorX, 3> answer_u_, answer_lambda_;  ///< columns of Z
-  std::vector<Mat3> answer_rotation_;                ///< per node, where Z belongs
+  PointAnswer answer_;   ///< Z
+  int next_column_ = 0;  ///< of it, that a correction brings along
   Mat3 compliance_ = Mat3::Zero();
   Mat3 stiffness_ = Mat3::Zero();
   Mat3 from_gap_ = Mat3::Zero();  ///< (N Z)^-1
-  int next_column_ = 0;
 
   model::State trial_;
   model::State good_;            ///< the last one near to equilibrium, of a body with mass of the step under way

@@ -1,29 +1,25 @@
 #pragma once
 
 /// The linear systems of a body that moves a little from frame to frame: conjugate gradients on S = A + B C^-1 B^T, the
-/// pressure eliminated (linalg/condensed_preconditioner.h), cut short. What makes them cheap is the preconditioner
-///
-///     P~ = sum over tets of (A_e + b_e b_e^T / d_e) + V G^-1 V^T,
-///
-/// whose sum is factored by a FrontTree: a version that never changes, which another thread may make anew meanwhile,
-/// and which follows a crack by factoring again what the crack has touched. No BLAS, no workspace that two threads
-/// share.
+/// pressure eliminated (linalg/condensed_preconditioner.h), cut short, with the preconditioner of live_preconditioner.h
+/// turned with the body. Systems that are due at once are solved side by side.
 
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "base/background.h"
 #include "linalg/chebyshev_inverse.h"
-#include "linalg/conjugate_gradients.h"
 #include "linalg/front_solver.h"
-#include "linalg/front_tree.h"
-#include "linalg/pressure_patches.h"
 #include "linalg/saddle_residual.h"
+#include "linalg/side_by_side_cg.h"
+#include "linalg/whole_rows.h"
 #include "model/model.h"
+#include "solver/live_preconditioner.h"
 #include "solver/node_rotations.h"
 
 namespace rhexis::solver {
@@ -35,30 +31,37 @@ struct HeldPoint {
   int count = 0;
 
   /// N x.
-  [[nodiscard]] Vec3 of(const VectorX& x) const {
+  template <class Vectors>
+  [[nodiscard]] Vec3 of(const Vectors& x, Eigen::Index lane = 0) const {
     Vec3 out = Vec3::Zero();
     for (int k = 0; k < count; ++k)
-      out += weight[k] * x.segment<3>(3 * Eigen::Index{node[static_cast<std::size_t>(k)]});
+      out += weight[k] * x.template block<3, 1>(3 * Eigen::Index{node[static_cast<std::size_t>(k)]}, lane);
     return out;
   }
   /// x += N^T f.
-  void add(const Vec3& f, VectorX& x) const {
-    for (int k = 0; k < count; ++k) x.segment<3>(3 * Eigen::Index{node[static_cast<std::size_t>(k)]}) += weight[k] * f;
+  template <class Vectors>
+  void add(const Vec3& f, Vectors& x, Eigen::Index lane = 0) const {
+    for (int k = 0; k < count; ++k)
+      x.template block<3, 1>(3 * Eigen::Index{node[static_cast<std::size_t>(k)]}, lane) += weight[k] * f;
   }
-};
-
-/// What a tear did to a model that follows it.
-struct TornModel {
-  std::vector<std::int32_t> copied;   ///< the node that each appended node is a copy of
-  std::vector<std::int32_t> touched;  ///< tets that went, moved or took other nodes; ascending
-
-  /// Another one after it.
-  void add(const TornModel& next);
 };
 
 /// Iterations of the caller after which a preconditioner that was begun beside him is taken up: by then it is ready,
 /// mostly.
-inline constexpr int kRefreshWork = 60;
+inline constexpr int kRefreshWork = 48;
+
+/// `fixed`: with N xu = 0, by projection of the residuals and a preconditioner that knows the constraint (Gould,
+/// Hribar, Nocedal 2001); what is left of a residual along N^T is the force that keeps it, and counts as nothing.
+enum class Point { free, fixed };
+
+struct LiveOrder {
+  Point point = Point::free;
+  double tolerance = 0.0;  ///< relative residual, of what there is with the pressures eliminated
+  int most = 0;            ///< iterations at most; 0: no system
+  /// C^-1 to a percent and not to a third, for several times its price: for a body that is about to give way, whose
+  /// tangent is definite by the pressures alone.
+  bool careful = false;
+};
 
 struct LiveSolve {
   int iterations = 0;
@@ -86,17 +89,16 @@ class LiveLinear {
   [[nodiscard]] const std::vector<Mat3>& rotation() const { return rotation_; }
   /// N of the solves that are to leave N x = 0: the displacement of the point. Empty: there is none.
   void set_constraint(const std::optional<HeldPoint>& point);
-  /// P~^-1 N^T e_j with the pressures that go with it: a first answer to the hand, positive definite over the j
-  /// whatever the tangent is.
-  void first_answer(int j, VectorX& xu, VectorX& xp);
-  /// K (xu, xp) ~ (bu, bp) over the free dofs to a relative residual of `tolerance`, at most `most` iterations.
-  /// `fixed`: with N xu = 0, by projection of the residuals and a preconditioner that knows the constraint (Gould,
-  /// Hribar, Nocedal 2001); what is left of a residual along N^T is the force that keeps it, and counts as nothing.
-  enum class Point { free, fixed };
-  /// `careful`: with C^-1 to a percent and not to a third, for several times its price: for a body that is about to
-  /// give way, whose tangent is definite by the pressures alone.
-  LiveSolve solve(Point point, const VectorX& bu, const VectorX& bp, double tolerance, int most, bool careful,
-                  VectorX& xu, VectorX& xp);
+  /// P~^-1 N^T with the pressures that go with it, by columns: a first answer to the hand, positive definite whatever
+  /// the tangent is.
+  void first_answer(linalg::FourLanes& xu, linalg::FourLanes& xp);
+  /// K (xu, xp) ~ (bu, bp) over the free dofs.
+  LiveSolve solve(const LiveOrder& order, const VectorX& bu, const VectorX& bp, VectorX& xu, VectorX& xp);
+  /// Side by side, k = 1, 2 or 4: a system to a lane; those without one come out zero. One that is careful makes all
+  /// so.
+  template <int k>
+  std::array<LiveSolve, k> solve(const std::array<LiveOrder, k>& orders, const linalg::Lanes<k>& bu,
+                                 const linalg::Lanes<k>& bp, linalg::Lanes<k>& xu, linalg::Lanes<k>& xp);
   /// r^T C^-1 r / 2, J: what the stored energy has to gain by the pressures, from their residual r.
   [[nodiscard]] double energy_of_pressure(const VectorX& rp);
   /// Starts to prepare another preconditioner at `state` beside the caller, unless one is under way.
@@ -108,18 +110,22 @@ class LiveLinear {
   [[nodiscard]] std::size_t memory_bytes() const;
 
  private:
-  struct Preconditioner;
-  using Prepared = std::shared_ptr<const Preconditioner>;
-  /// `before`: one of the same tets, whose order is taken and, where it is of the same model, what depends on C alone;
-  /// null: none.
-  [[nodiscard]] static Prepared prepare(const std::shared_ptr<const model::Model>& model, const linalg::FreeDofs& free,
-                                        const model::State& state, double inertia, const Preconditioner* before);
-  /// After the body has torn, at a state of the present model. Null: it would not be definite.
-  [[nodiscard]] Prepared followed(const Preconditioner& before, const model::State& state, const TornModel& torn) const;
-  void invert_pressure(const VectorX& b, VectorX& x, bool careful);
-  void apply(const VectorX& x, VectorX& y);
-  void precondition(const VectorX& r, VectorX& z);
-  void project(VectorX& r) const;
+  /// What a solve of k lanes works with.
+  template <int k>
+  struct Work {
+    linalg::Lanes<k> r, turned, solved;  // dofs
+    linalg::Lanes<k> p, q, left, more;   // pressures: C^-1 of q; what a careful inverse leaves
+    linalg::CgLanes<k> cg;
+    std::array<bool, k> fixed{};
+  };
+  template <int k>
+  void invert_pressure(const linalg::Lanes<k>& b, bool careful, Work<k>& work, linalg::Lanes<k>& x);
+  template <int k>
+  void apply(const linalg::Lanes<k>& x, bool careful, Work<k>& work, linalg::Lanes<k>& y);
+  template <int k>
+  void precondition(const linalg::Lanes<k>& r, Work<k>& work, linalg::Lanes<k>& z);
+  template <int k>
+  void project(const Work<k>& work, linalg::Lanes<k>& r) const;
   void solve_for_point();
   void turn();
 
@@ -128,29 +134,25 @@ class LiveLinear {
   double inertia_;
   linalg::ChebyshevInverse c_inverse_;
   const linalg::SaddleMatrix* K_ = nullptr;
-  Prepared preconditioner_;
+  linalg::WholeRows A_;  ///< of it
+  LivePreconditioner::Shared preconditioner_;
 
   NodeRotations rotations_;
   std::vector<Mat3> rotation_;  ///< of each node at the tangent
   std::vector<Mat3> turn_;      ///< T, since the preconditioner's state
-  VectorX turned_, solved_;
 
-  bool careful_ = false;      ///< the solve under way
-  bool constrained_ = false;  ///< and that
   std::optional<HeldPoint> point_;
-  std::vector<VectorX> of_nodes_;       ///< P~^-1 of each dof of the point's nodes, as the preconditioner lies
-  std::array<VectorX, 3> answer_;       ///< P~^-1 N^T, turned
-  Mat3 answer_inverse_ = Mat3::Zero();  ///< (N P~^-1 N^T)^-1
-  linalg::CgWorkspace work_;
-  VectorX r_, p_, q_;
-  VectorX left_, more_;  ///< of a careful inverse
+  std::vector<linalg::FourLanes> of_nodes_;  ///< P~^-1 of the dofs of each of the point's nodes, as it lies
+  linalg::FourLanes answer_;                 ///< P~^-1 N^T by columns, turned
+  Mat3 answer_inverse_ = Mat3::Zero();       ///< (N P~^-1 N^T)^-1
+  std::tuple<Work<1>, Work<2>, Work<4>> work_;
   linalg::ChebyshevInverse::Work c_work_;
   linalg::FrontSolver::Work front_work_;
 
   int worked_ = 0;           ///< iterations since the refresh began
   TornModel torn_since_;     ///< the same for the body
   model::State state_then_;  ///< where it has torn since: its state after the last time
-  Prepared refreshed_;
+  LivePreconditioner::Shared refreshed_;
   std::atomic<bool> ready_ = false;
   BackgroundTask task_;  ///< writes the two above: it has to end before they do, so it stands last
 };

@@ -102,6 +102,19 @@ TEST(TearCommand, ABarWithMassThatIsLetGoSwingsAndIsShown) {
   EXPECT_EQ(ticks, 2000);
 }
 
+TEST(TearCommand, ASoftVesselTearsByItsToughness) {
+  const fs::path out = test::fresh_folder("tear");
+  const test::Ran ran = test::run_rhexis(
+      "tear scenes/vessel-soft.toml --set fracture.strength= --set fracture.toughness=3 --set mesh.nodes=600 "
+      "--set pull.0.seconds=0.1 --json --out '" +
+      out.string() + "'");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const json summary = json::parse(ran.out);
+  ASSERT_GE(summary["advances"].size(), 3U);
+  for (std::size_t k = 1; k < summary["advances"].size(); ++k)
+    EXPECT_GE(summary["advances"][k]["value"].get<double>(), 3.0) << k;
+}
+
 TEST(TearCommand, WritesEveryTopologyTheTraceAndTheSummary) {
   const fs::path out = test::fresh_folder("tear");
   const test::Ran ran = tear("", out);

@@ -361,6 +361,8 @@ TEST(Toughness, TakesThePlaceOfTheStrength) {
   EXPECT_EQ(by_toughness(judgement, 3.0, 3.0, kEdge).direction, judgement.direction);
   judgement.met = true;
   EXPECT_FALSE(by_toughness(judgement, 1.0, 3.0, kEdge).met);
+  for (const double none : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    EXPECT_FALSE(by_toughness(judgement, none, 3.0, kEdge).met);
   judgement.value = -1.0;  // pressed together: the crack is closed, whatever the integral says
   EXPECT_FALSE(by_toughness(judgement, 30.0, 3.0, kEdge).met);
 }

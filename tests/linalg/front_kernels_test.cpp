@@ -67,19 +67,26 @@ TEST_P(FrontKernelsOf, factor_like_the_dense_factor) {
       kernels->backward(panel.data(), ld, columns, below, x.data());
       EXPECT_LT((x.head(columns) - solved).norm(), kSame * rows);
       // And with its inverted blocks in single precision.
-      MatrixXf W(rows, columns);
-      kernels->invert_panel(panel.data(), ld, columns, below, W.data());
+      const int ldw = (rows + kSinglePacket - 1) / kSinglePacket * kSinglePacket;
+      MatrixXf W = MatrixXf::Zero(ldw, columns);
+      kernels->invert_panel(panel.data(), ld, columns, below, W.data(), ldw);
       const MatrixXd inverse_of_top = top.solve(MatrixXd::Identity(columns, columns));
       MatrixXd wanted(rows, columns);
       wanted << inverse_of_top, lower.bottomRows(below) * inverse_of_top;
-      EXPECT_LT((W.cast<double>() - wanted).norm(), kSameSingle * wanted.norm());
-      const VectorXf p = random_matrix(columns, 1, random).cast<float>();
-      VectorXf product(rows);
-      kernels->multiply_single(W.data(), rows, rows, columns, p.data(), product.data());
-      EXPECT_LT((product.cast<double>() - wanted * p.cast<double>()).norm(), kSameSingle * rows);
-      VectorXf back(columns);
-      kernels->multiply_transposed_single(W.data(), rows, columns, product.data(), back.data());
-      EXPECT_LT((back.cast<double>() - wanted.transpose() * product.cast<double>()).norm(), kSameSingle * rows);
+      EXPECT_LT((W.topRows(rows).cast<double>() - wanted).norm(), kSameSingle * wanted.norm());
+      for (const int lanes : {1, 2, 4}) {
+        const MatrixXf p = random_matrix(columns, lanes, random).cast<float>();
+        MatrixXf product(ldw, lanes);
+        kernels->multiply_single(W.data(), ldw, ldw, columns, lanes, p.data(), columns, product.data(), ldw);
+        const MatrixXd expected_product = wanted * p.cast<double>();
+        EXPECT_LT((product.topRows(rows).cast<double>() - expected_product).norm(), kSameSingle * lanes * rows);
+        EXPECT_TRUE((product.bottomRows(ldw - rows).array() == 0.0F).all());
+        MatrixXf back(columns, lanes);
+        kernels->multiply_transposed_single(W.data(), ldw, ldw, columns, lanes, product.data(), ldw, back.data(),
+                                            columns);
+        const MatrixXd expected_back = wanted.transpose() * product.topRows(rows).cast<double>();
+        EXPECT_LT((back.cast<double>() - expected_back).norm(), kSameSingle * lanes * rows);
+      }
     }
   }
 }

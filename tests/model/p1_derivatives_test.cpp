@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "element/linear_tet.h"
 #include "tests/model/differences.h"
 #include "tests/model/p1_support.h"
 
@@ -46,6 +47,30 @@ TEST_P(P1Derivatives, ResidualIsTheGradientOfTheEnergy) {
     // Order 6 at a fifth of a percent of the scale: truncation and rounding both near 1e-12 of the energy per step.
     EXPECT_NEAR(measured, expected, 1e-9 * (std::abs(expected) + std::abs(at.energy)));
   }
+}
+
+TEST_P(P1Derivatives, TetsAddUpToTheEnergyAndTheForces) {
+  const mesh::TetMesh mesh = distorted_box({2, 2, 3});
+  const auto model = model::make_model(mesh, GetParam().settings);
+  const model::State state = random_state(mesh, model->pressure_unknowns());
+  double energy = 0.0;
+  VectorX force = VectorX::Zero(state.u.size());
+  for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+    const element::LinearTet shape = element::make_linear_tet(mesh::corners(mesh, TetId(t)));
+    Mat3 F = Mat3::Identity();
+    for (std::size_t a = 0; a < 4; ++a)
+      F += state.u.segment<3>(3 * Eigen::Index{mesh.tets[t][a].value()}) * shape.gradient[a].transpose();
+    const model::TetState tet = model->tet_state(state, TetId(t), F);
+    energy += shape.volume * tet.W;
+    for (std::size_t a = 0; a < 4; ++a)
+      force.segment<3>(3 * Eigen::Index{mesh.tets[t][a].value()}) += shape.volume * tet.P * shape.gradient[a];
+  }
+  model::ModelSettings without_jumps = GetParam().settings;  // which are of faces
+  without_jumps.beta = 0.0;
+  const double expected = model::make_model(mesh, without_jumps)->energy(state);
+  EXPECT_NEAR(energy, expected, 1e-13 * std::abs(expected));
+  const VectorX of_model = evaluate(*model, state).residual.head(state.u.size());
+  EXPECT_LT((force - of_model).norm(), 1e-13 * of_model.norm());
 }
 
 TEST_P(P1Derivatives, TangentIsTheDerivativeOfTheResidual) {

@@ -214,9 +214,6 @@ TEST(TearProblem, DynamicsThatLeaveNothingOfASwingAreWarnedOf) {
 TEST(TearProblem, ABodyOfLargeStrainSaysWhatItDoesNotHave) {
   const std::string corotated = replaced(kPlate, "\"linear\"", "\"corotated\"");
   const std::vector<BadScene> table{
-      {"strength = 0.4e6", "toughness = 40.0",
-       "s.toml:20: a toughness is held against the energy release of small strains, not of model 'corotated' (a "
-       "strength)"},
       {"[[crack]]", "[interaction]\ncontact = \"blend\"\n[[crack]]",
        "s.toml:22: contact \"blend\" adds up reactions, which model 'corotated' does not allow (contact = "
        "\"consistent\")"}};

@@ -98,8 +98,11 @@ constexpr std::size_t kEvery = 3;
 
 class LivePull {
  public:
-  explicit LivePull(int seed)
-      : seed_(static_cast<std::uint64_t>(seed)), body_(body_of(seed)), draws_(static_cast<std::uint64_t>(seed)) {}
+  explicit LivePull(int seed, bool by_toughness = false)
+      : seed_(static_cast<std::uint64_t>(seed)),
+        body_(body_of(seed)),
+        by_toughness_(by_toughness),
+        draws_(static_cast<std::uint64_t>(seed)) {}
 
   void run(LiveTally& tally) {
     make_body();
@@ -138,6 +141,10 @@ class LivePull {
     settings_.advance_threshold = draws_.uniform(0.3, 1.0) * *settings_.strength;
     settings_.incision =
         draws_.uniform(0, 1) < 0.5 ? fracture::IncisionMethod::split : fracture::IncisionMethod::keep_nodes;
+    if (by_toughness_) {
+      settings_.strength.reset();
+      settings_.toughness = draws_.uniform(1.0, 20.0);
+    }
   }
 
   /// Gives the nodes by which it is held.
@@ -167,7 +174,7 @@ class LivePull {
   }
 
   std::vector<scene::CrackSettings> choose_cracks() {
-    if (draws_.uniform(0, 1) < 0.3) return {};  // starts where it yields
+    if (!by_toughness_ && draws_.uniform(0, 1) < 0.3) return {};  // starts where it yields
     const Vec3 size = box_.size();
     const Vec3 inside = box_.from + draws_.vector(0.3, 0.7).cwiseProduct(size);
     Vec3 way = draws_.direction();
@@ -199,6 +206,10 @@ class LivePull {
       if (!report.trouble.empty()) ++tally.refused;
       if (!report.late.empty()) ++tally.late;
       ASSERT_TRUE(report.force.allFinite()) << seed_;
+      if (tore_ && by_toughness_) {
+        ASSERT_TRUE(std::isfinite(tear_->advances().back().value)) << seed_;
+        ASSERT_GE(tear_->advances().back().value, *settings_.toughness) << seed_;
+      }
       if (tore_) check_state(tally);
       if (testing::Test::HasFatalFailure()) return;
       if (report.let_go || tear_->pieces() > pieces_) break;
@@ -280,6 +291,7 @@ class LivePull {
 
   std::uint64_t seed_;
   Body body_;
+  bool by_toughness_ = false;
   test::RandomDraws draws_;
   mesh::TetMesh mesh_;
   mesh::BoundingBox box_;
@@ -312,6 +324,17 @@ TEST(LivePulls, TearWithoutHarmAndComeToTheEquilibriumOfTheTornBody) {
     test::measured("kidney or liver is not here (kidney_1k.msh, liver_1k.msh): organs of ours in their place");
   EXPECT_GT(tally.advances, count);  // the sweep tears, it does not only pull
   EXPECT_GT(tally.released, count / 2);
+}
+
+TEST(LivePulls, TearWithoutHarmByToughness) {
+  LiveTally tally;
+  for (int seed = 0; seed < 8; ++seed) {
+    LivePull(seed, true).run(tally);
+    if (testing::Test::HasFatalFailure()) FAIL() << "seed " << seed;
+  }
+  test::measured("by toughness: {} live pulls, {} advances in {} ticks, {} late, {} cuts refused, least J {:.3f}",
+                 tally.pulls, tally.advances, tally.ticks, tally.late, tally.refused, tally.least_J);
+  EXPECT_GT(tally.advances, 8);
 }
 
 }  // namespace
