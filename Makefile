@@ -84,10 +84,10 @@ bench: ## the benchmarks; ARGS='--benchmark_filter=...' chooses
 	@$(call build_preset,release,rhexis_bench)
 	@build/release/bin/rhexis_bench $(ARGS)
 
-rivals: ## bars beside Bullet and CalculiX, which it installs: tables, and out/rivals.json; ARGS=--help says what can be chosen
+rivals: ## bars beside Bullet and CalculiX, which it installs: tables, and out/rivals.json; ARGS=--help says what can be chosen, and that part goes to out/rivals-part.json
 	@tools/install rivals
 	@$(call build_preset,release,rhexis_rivals)
-	@mkdir -p out && build/release/bin/rhexis_rivals --out out/rivals.json $(ARGS)
+	@mkdir -p out && build/release/bin/rhexis_rivals --out out/rivals$(if $(ARGS),-part).json $(ARGS)
 
 clean: ## remove what was built and made
 	@rm -rf build out

@@ -5,6 +5,7 @@
 #include "result/summary.h"
 #include "scene/problem.h"
 #include "scene/tear_problem.h"
+#include "session/script.h"
 #include "session/start.h"
 
 namespace rhexis::apps {
@@ -54,8 +55,7 @@ int check_tear(const scene::Scene& scene, const std::string& name, const Common&
   const Expected<session::TearStart> start = session::start_tear(problem);
   if (!start) return report(start.error());
   log_remarks({}, start->warnings);
-  double seconds = 0.0;
-  for (const scene::PullSettings& pull : problem.pulls) seconds += pull.seconds + pull.hold;
+  const double seconds = session::script_seconds(problem.pulls);
   if (common.json) {
     print_json({{"title", problem.title},
                 {"model", start->tear->model_name()},

@@ -136,7 +136,7 @@ int precompute(const PrecomputeOptions& options, const Common& common) {
   if (common.json) print_json(summary);
   if (!common.json && !common.quiet) print_outcome(summary);
   if (done->ending != Ending::stopped) return kDone;
-  fmt::print(stderr, "rhexis: {}: stopped by Ctrl-C; the same command goes on where it stood\n", options.scene->scene);
+  fmt::print(stderr, "rhexis: {}: stopped; the same command goes on where it stood\n", options.scene->scene);
   return kFailedComputation;
 }
 

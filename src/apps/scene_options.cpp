@@ -12,7 +12,9 @@ fs::path SceneOptions::folder() const { return out.empty() ? fs::path("out") / f
 std::shared_ptr<SceneOptions> add_scene_options(CLI::App& command) {
   auto options = std::make_shared<SceneOptions>();
   command.add_option("scene", options->scene, "scene file (docs/scene.md)")->required();
-  command.add_option("--set", options->overrides, "override a value of the scene, as often as wanted")
+  command
+      .add_option("--set", options->overrides,
+                  "override a value of the scene, as often as wanted; KEY= takes the key out")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->take_all();

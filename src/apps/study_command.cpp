@@ -89,7 +89,7 @@ Finished run(const Study& study, const StudyFunction& function, const fs::path& 
     return finished;
   }
   if (!finished.run.stopped) return finished;
-  fmt::print(stderr, "rhexis: study {}: stopped by Ctrl-C, the tables hold what was measured until then\n", study.name);
+  fmt::print(stderr, "rhexis: study {}: stopped, the tables hold what was measured until then\n", study.name);
   finished.code = kFailedComputation;
   return finished;
 }

@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "scene/tear_problem.h"
 #include "session/scene_record.h"
+#include "session/script.h"
 #include "session/start.h"
 #include "session/tear_session.h"
 
@@ -17,13 +18,14 @@ namespace {
 
 using session::TearSession;
 
+/// Of a body that moves by itself a state is written so often.
+constexpr int kTicksPerState = 20;
+
 /// The scripted hand, tick by tick. Ends early on trouble, on an error of the output, or when asked to.
 class Script {
  public:
   Script(const scene::TearProblem& problem, TearSession& tear, TearOutput& output)
-      : problem_(problem), tear_(tear), output_(output) {
-    for (const scene::PullSettings& pull : problem.pulls) ticks_ += ticks_of(pull.seconds) + ticks_of(pull.hold);
-  }
+      : problem_(problem), tear_(tear), output_(output), ticks_(ticks_of(session::script_seconds(problem.pulls))) {}
 
   /// Empty when the script came to its end; else why it did not.
   Expected<std::string> run(Progress& progress, const Interrupt& interrupt) {
@@ -39,10 +41,13 @@ class Script {
         const Vec3 hand = pull.by * (static_cast<double>(std::min(k, moving)) / moving);
         Expected<std::string> trouble = tick(hand, progress);
         if (!trouble || !trouble->empty()) return trouble;
-        if (interrupt.asked()) return std::string("stopped by Ctrl-C");
+        if (interrupt.asked()) return stopped();
       }
-      // After the last pull the result is written as it stands, and then the hand lets go.
-      if (&pull != &problem_.pulls.back()) tear_.let_go();
+      // After a last pull without a wait the result is written as it stands, and then the hand lets go.
+      if (&pull == &problem_.pulls.back() && pull.wait == 0.0) break;
+      tear_.let_go();
+      Expected<std::string> trouble = wait(ticks_of(pull.wait), progress, interrupt);
+      if (!trouble || !trouble->empty()) return trouble;
     }
     return std::string();
   }
@@ -50,6 +55,24 @@ class Script {
  private:
   /// A tick is 1 ms.
   static int ticks_of(double seconds) { return static_cast<int>(std::lround(1000.0 * seconds)); }
+
+  [[nodiscard]] std::string stopped() const { return fmt::format("stopped at {:.3f} s", 1e-3 * tick_); }
+
+  /// The body alone. What has a mass is on its way, and shown on it.
+  Expected<std::string> wait(int ticks, Progress& progress, const Interrupt& interrupt) {
+    const bool moves = tear_.settings().dynamics.has_value();
+    for (int k = 1; k <= ticks; ++k) {
+      Expected<std::string> trouble = tick(Vec3::Zero(), progress);
+      if (!trouble || !trouble->empty()) return trouble;
+      if (moves && k % kTicksPerState == 0) {
+        progress.update(static_cast<double>(tick_) / ticks_, fmt::format("{:.3f} s: let go", 1e-3 * tick_));
+        if (Expected<void> done = output_.write_released(tear_, tick_ / 1000.0); !done)
+          return fail(std::move(done.error()));
+      }
+      if (interrupt.asked()) return stopped();
+    }
+    return std::string();
+  }
 
   Expected<std::string> tick(const Vec3& hand, Progress& progress) {
     const double time = 1e-3 * ++tick_;
@@ -84,7 +107,7 @@ class Script {
   const scene::TearProblem& problem_;
   TearSession& tear_;
   TearOutput& output_;
-  int ticks_ = 0;
+  int ticks_;
   int tick_ = 0;
   std::string late_;  ///< said already
   response::RecordUse said_;

@@ -42,6 +42,13 @@ Expected<void> TearOutput::write_topology(session::TearSession& tear, double tim
   return folder_.write_topology(tear.body().topology(), tear.body().mesh(), fields_of(tear, u));
 }
 
+Expected<void> TearOutput::write_released(session::TearSession& tear, double time) {
+  VectorX u;
+  tear.displacement(u);
+  note_displacement(u);
+  return folder_.write_released(time, tear.body().mesh(), fields_of(tear, u));
+}
+
 Expected<void> TearOutput::write_tick(session::TearSession& tear, double time, const Vec3& hand,
                                       const session::TickReport& report) {
   const Vec3& f = report.force;

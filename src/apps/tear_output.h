@@ -1,7 +1,7 @@
 #pragma once
 
 /// The folder that `rhexis tear` leaves behind (docs/results.md): every topology as VTU and VTKHDF, the series of them,
-/// the force trace as CSV and SVG, the last state and summary.json.
+/// that of a body with mass after it was let go, the force trace as CSV and SVG, the last state and summary.json.
 
 #include <algorithm>
 #include <filesystem>
@@ -24,6 +24,8 @@ class TearOutput {
 
   /// The body as it is now. `time` s.
   Expected<void> write_topology(session::TearSession& tear, double time);
+  /// The body that nobody holds as it is now. `time` s.
+  Expected<void> write_released(session::TearSession& tear, double time);
   /// A line of force.csv. The file grows line by line, so that a killed run keeps what it measured.
   Expected<void> write_tick(session::TearSession& tear, double time, const Vec3& hand,
                             const session::TickReport& report);

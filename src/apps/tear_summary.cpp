@@ -70,7 +70,7 @@ ordered_json make_tear_summary(const scene::TearProblem& problem, const std::vec
   summary["model"] = tear.model_name();
   summary["criterion"] = tear.settings().criterion;
   summary["incision"] = problem.fracture.incision;
-  summary["response"] = problem.interaction.response;
+  summary["response"] = tear.is_linear() ? problem.interaction.response : "live";
   summary["converged"] = why.empty();
   summary["why"] = why;
   summary["nodes"] = tear.body().mesh().node_count();

@@ -11,18 +11,12 @@ DeviceTraits PointerDevice::make_traits() {
 }
 
 void PointerDevice::move_to(const Vec3& position, std::uint32_t buttons) noexcept {
-  sent_ = {{position[0], position[1], position[2]}, buttons, true};
-  newest_.publish(sent_);
-}
-
-void PointerDevice::lose() noexcept {
-  sent_.present = false;
-  newest_.publish(sent_);
+  newest_.publish({{position[0], position[1], position[2]}, buttons});
 }
 
 Reading PointerDevice::read(std::uint64_t) noexcept {
   newest_.take(target_);
-  return {Vec3(target_.position[0], target_.position[1], target_.position[2]), target_.buttons, target_.present};
+  return {Vec3(target_.position[0], target_.position[1], target_.position[2]), target_.buttons, true};
 }
 
 }  // namespace rhexis::haptics

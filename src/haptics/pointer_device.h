@@ -18,8 +18,6 @@ class PointerDevice final : public Device {
   /// m, of the hand from where it took hold. By one thread; before a hold is published, zero. What is not finite is
   /// refused by the tick, not here.
   void move_to(const Vec3& position, std::uint32_t buttons = 0) noexcept;
-  /// The page that had the hand is gone, until the next move_to. By the same thread.
-  void lose() noexcept;
 
   [[nodiscard]] const DeviceTraits& traits() const override { return traits_; }
   Reading read(std::uint64_t tick) noexcept override;
@@ -29,11 +27,9 @@ class PointerDevice final : public Device {
   struct Target {
     std::array<double, 3> position{};
     std::uint32_t buttons = 0;
-    bool present = true;
   };
 
   DeviceTraits traits_ = make_traits();
-  Target sent_;  ///< the writer's
   NewestValue<Target> newest_;
   Target target_;  ///< the reader's
 };

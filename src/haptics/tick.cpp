@@ -55,7 +55,6 @@ HapticTick::HapticTick(const TickSettings& settings, const DeviceTraits& traits)
 
 TickOutput HapticTick::step(const Reading& reading, const ForceSnapshot& law, bool fresh) noexcept {
   if (law_age_ < std::numeric_limits<std::uint32_t>::max()) ++law_age_;
-  if (up_to_date_age_ < std::numeric_limits<std::uint32_t>::max()) ++up_to_date_age_;
   if (fresh) take_up(law);
   const bool is_there = reading.present && reading.position.allFinite();
   if (is_there) follow_device(reading.position);
@@ -81,7 +80,6 @@ TickOutput HapticTick::step(const Reading& reading, const ForceSnapshot& law, bo
 
 void HapticTick::take_up(const ForceSnapshot& snapshot) noexcept {
   law_age_ = 0;
-  if ((snapshot.flags & ForceSnapshot::out_of_date) == 0) up_to_date_age_ = 0;
   number_ = snapshot.number;
   newest_is_readable_ = is_finite(snapshot);
   if (newest_is_readable_) newest_ = snapshot;
@@ -191,8 +189,8 @@ void HapticTick::close_grip() noexcept {
 }
 
 double HapticTick::fading() const noexcept {
-  const auto age = static_cast<double>(std::max(law_age_, up_to_date_age_));
-  return std::clamp((settings_.lost_ticks - age) / (settings_.lost_ticks - settings_.late_ticks), 0.0, 1.0);
+  return std::clamp(
+      (settings_.lost_ticks - static_cast<double>(law_age_)) / (settings_.lost_ticks - settings_.late_ticks), 0.0, 1.0);
 }
 
 void HapticTick::move_presence(bool nothing_is_wrong) noexcept {

@@ -63,11 +63,10 @@ class HapticTick {
   double smoothing_;       ///< of the velocity: the part that a new value has
   std::uint64_t tick_ = 0;
 
-  response::ForceSnapshot newest_;    ///< the last that could be read
-  bool newest_is_readable_ = false;   ///< the last that came could be
-  std::uint64_t number_ = 0;          ///< of the last that came
-  std::uint32_t law_age_ = 0;         ///< ticks since one came
-  std::uint32_t up_to_date_age_ = 0;  ///< ticks since one came that is not out of date
+  response::ForceSnapshot newest_;   ///< the last that could be read
+  bool newest_is_readable_ = false;  ///< the last that came could be
+  std::uint64_t number_ = 0;         ///< of the last that came
+  std::uint32_t law_age_ = 0;        ///< ticks since one came
 
   PositionFilter filter_;
   std::optional<Vec3> seen_;      ///< m, `position_` through the filter

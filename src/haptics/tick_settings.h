@@ -25,7 +25,7 @@ struct TickSettings {
   /// N, on the length of the force at the device; 0: none. The smallest of this, the scene's and the device's holds.
   double max_force = 0.0;
   int ramp_ticks = 50;   ///< after taking hold, letting go, or a gap: until the force is there, or gone
-  int late_ticks = 100;  ///< a law may be so old, or out of date for so long, before the force fades
+  int late_ticks = 100;  ///< a law may be so old before the force fades
   int lost_ticks = 300;  ///< > late_ticks: so old, the physics is lost and the force zero
   /// Whether energy is watched and taken back.
   bool restrains = true;

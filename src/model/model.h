@@ -71,6 +71,8 @@ class Model {
   [[nodiscard]] virtual bool is_linear() const { return false; }
   /// Per tet, nonzero where it is no part of the body; empty: all are.
   [[nodiscard]] virtual std::span<const std::uint8_t> left_out() const { return {}; }
+  /// m^3 of each tet, 0 of those that are left out. Not of mass-spring and taylor-hood: RHEXIS_CHECK.
+  [[nodiscard]] virtual std::vector<double> tet_volumes() const;
   /// False for models whose law has no answer at J <= 0 (a step into that is cut); true where inversion is defined
   /// (linear, mass-spring, corotated, St. Venant-Kirchhoff): it is counted and reported instead.
   [[nodiscard]] virtual bool allows_inversion() const = 0;

@@ -83,6 +83,13 @@ linalg::SymmetricBlockMatrix P1Model::small_strain_stiffness(double lame_lambda,
   return out;
 }
 
+std::vector<double> P1Model::tet_volumes() const {
+  std::vector<double> out(tet_count_, 0.0);
+  for (const element::TetBatch& batch : batches_.batches())
+    for (int lane = 0; lane < batch.count; ++lane) out[static_cast<std::size_t>(batch.tet[lane])] = batch.volume[lane];
+  return out;
+}
+
 void P1Model::for_each_tet(const VectorX& u, const std::function<void(std::size_t, const Mat3&, double)>& visit) const {
   const std::vector<element::TetBatch>& all = batches_.batches();
   parallel_ranges(all.size(), kBatchGrain, [&](std::size_t begin, std::size_t end) {

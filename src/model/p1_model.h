@@ -16,6 +16,7 @@ class P1Model : public Model {
  public:
   [[nodiscard]] const DisplacementSpace& space() const override { return space_; }
   [[nodiscard]] LeftOut left_out() const override { return left_out_; }
+  [[nodiscard]] std::vector<double> tet_volumes() const override;
   [[nodiscard]] std::unique_ptr<Scratch> make_scratch() const override;
   [[nodiscard]] linalg::SaddleMatrix make_tangent() const override;
   [[nodiscard]] std::size_t memory_bytes() const override;

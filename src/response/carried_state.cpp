@@ -4,9 +4,9 @@
 #include <array>
 #include <limits>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "element/cofactor.h"
 #include "element/linear_tet.h"
 
 namespace rhexis::response {
@@ -54,8 +54,7 @@ Volume volume_of(const mesh::TetMesh& mesh, TetId tet, const VectorX& u) {
   std::array<Vec3, 4> w;
   for (std::size_t a = 0; a < 4; ++a) w[a] = u.segment<3>(3 * Eigen::Index{mesh.tet(tet)[a].value()});
   const Mat3 F = Mat3::Identity() + element::displacement_gradient(shape, w);
-  Mat3 cofactor;
-  for (int i = 0; i < 3; ++i) cofactor.row(i) = F.row((i + 1) % 3).cross(F.row((i + 2) % 3));
+  const Mat3 cofactor = element::cofactor(F);
   Volume out;
   out.J = F.row(0).dot(cofactor.row(0));
   for (std::size_t a = 0; a < 4; ++a) out.slope[a] = cofactor * shape.gradient[a];

@@ -91,7 +91,7 @@ void LiveResponse::make_live(model::State state) {
 
 void LiveResponse::make_model() {
   left_out_ = tets_left_out(mesh_);
-  model_ = make_torn_model(mesh_, settings_.body.model, left_out_);
+  model_ = model::make_model(mesh_.mesh(), settings_.body.model, left_out_);
 }
 
 void LiveResponse::grasp(std::span<const NodeId> nodes) {
@@ -133,12 +133,17 @@ void LiveResponse::take_hold() {
                  std::any_of(supports.begin(), supports.end(),
                              [&](const model::PrescribedDof& support) { return support.dof / 3 == original; });
   }
-  if (!supported_) live_->hold(held);
+  if (!supported_) {
+    live_->hold(held);
+    led_to_ = live_->point();
+  }
   update_contact();
 }
 
 /// N u = p of a point whose nodes share what it gives way by: L = W^T C W / |w|^4, so that N L N^T = C, and the rest
-/// p - C f, from where the tangent counts.
+/// p - C f, from where the tangent counts. With mass C is that of a whole step, and p and f are those of its beginning:
+/// they go on with time as the next step will have them if every node keeps its velocity, else a hand that only goes on
+/// would feel the damping and inertia of a move out of rest, and lose them when the step begins.
 void LiveResponse::update_contact() {
   const Eigen::Index count = point_ ? 3 * point_->count : 0;
   compliance_.setZero(count, count);
@@ -146,7 +151,9 @@ void LiveResponse::update_contact() {
   if (!live_->holds() || !point_) return;
   const double square = point_->weight.squaredNorm();
   const Mat3 C = made_definite(live_->compliance());
-  const Vec3 rest = live_->point() - C * live_->force();
+  Vec3 rest = live_->point() - C * live_->force();
+  if (settings_.dynamics)
+    rest += std::min(owed_, settings_.dynamics->step) * (live_->velocity() - C * live_->force_rate());
   for (int a = 0; a < point_->count; ++a) {
     rest_.segment<3>(3 * a) = rest;
     for (int b = 0; b < point_->count; ++b)
@@ -181,21 +188,22 @@ void LiveResponse::pass(double seconds) {
   if (settings_.dynamics) owed_ = std::min(owed_ + seconds, kMostOwed * settings_.dynamics->step);
 }
 
-/// Once its time has come, and the step before has ended.
-void LiveResponse::begin_step() {
-  if (settings_.dynamics && owed_ > settings_.dynamics->step - kSameTime && live_->begin_step())
-    owed_ -= settings_.dynamics->step;
+/// Once its time has come, and the step before has ended. False: it has not yet.
+bool LiveResponse::begin_step() {
+  if (owed_ <= settings_.dynamics->step - kSameTime || !live_->begin_step()) return false;
+  owed_ -= settings_.dynamics->step;
+  return true;
 }
 
 MoveReport LiveResponse::move(const Vec3& hand) {
   MoveReport out;
-  begin_step();
+  if (!settings_.dynamics || begin_step()) led_to_ = hand;
   for (int k = 0; k < settings_.frames; ++k) {
     solver::LiveFrame frame;
     double tolerance = settings_.live.tolerance;
     bool inside_out = false;  // laws without a wall at J = 0 have equilibria there that no body has
     if (point_ && live_->holds()) {
-      frame = live_->step(target(hand));
+      frame = live_->step(target(led_to_));
     } else if (leaving_) {
       frame = live_->step(released());
       const bool is_free = frame.reached && way_back().norm() <= kFree * size_;
@@ -214,7 +222,7 @@ MoveReport LiveResponse::move(const Vec3& hand) {
       if (given_up_ == kMostGivenUp) begin_again();
     }
     out.at_rest = frame.reached && frame.corrections == 0 && frame.linear_iterations == 0 &&
-                  frame.residual <= tolerance && !inside_out && !live_->moves();
+                  frame.residual <= tolerance && !inside_out && !live_->moves() && (led_to_ == hand || !live_->holds());
     if (out.at_rest) given_up_ = 0;
     out.late = frame.trouble;
     if (out.at_rest || is_stuck(frame)) break;

@@ -5,7 +5,7 @@
 /// crack runs through its reference configuration (carried_state.h). Between moves the contact answers by the tangent.
 /// No clock: what is made beside the caller is taken up by counts, the same bits from run to run. A body with mass
 /// moves in steps of fixed length as time passes, one a move at most: where moves take longer it moves slower than
-/// life.
+/// life. It follows the hand step by step; between two steps the contact's law goes on with the point.
 
 #include <memory>
 #include <vector>
@@ -72,7 +72,7 @@ class LiveResponse final : public Response {
   [[nodiscard]] Vec3 released() const;
   [[nodiscard]] Expected<model::State> equilibrium_from_rest() const;
   void begin_again();
-  void begin_step();
+  bool begin_step();
   void update_contact();
   [[nodiscard]] Vec3 target(const Vec3& hand) const;
   [[nodiscard]] double potential_energy() const;
@@ -97,6 +97,7 @@ class LiveResponse final : public Response {
   int given_up_ = 0;            ///< frames without a hand that gave up, or were inside out, since it was at rest
   int inverted_from_rest_ = 0;  ///< tets, that are inside out where it came to rest from the undeformed body
   double owed_ = 0.0;           ///< s, that have passed and that the body has not moved by
+  Vec3 led_to_ = Vec3::Zero();  ///< m, the hand as the body follows it: with mass that of when the time step began
   ContactMode mode_ = ContactMode::hold;
   bool supported_ = false;  ///< the point: nothing holds it then
   Eigen::MatrixXd compliance_;

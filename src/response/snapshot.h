@@ -16,7 +16,6 @@ struct ForceSnapshot {
   enum Flag : std::uint32_t {
     is_held = 1,      ///< a point is held: without it the force is zero
     pushes_only = 2,  ///< only against the outward normal
-    out_of_date = 4,  ///< the body has torn since, and the next one is not ready
     torn_off = 8,     ///< the point that was held is on a piece without support, or gone
   };
 

@@ -23,11 +23,6 @@ std::vector<std::uint8_t> tets_left_out(const mesh::TornMesh& mesh) {
   return out;
 }
 
-std::shared_ptr<const model::Model> make_torn_model(const mesh::TornMesh& mesh, const model::ModelSettings& settings,
-                                                    const std::vector<std::uint8_t>& left_out) {
-  return model::make_model(mesh.mesh(), settings, left_out);
-}
-
 model::Loading make_torn_loading(const mesh::TornMesh& mesh, const LiveBody& body,
                                  const model::DisplacementSpace& space, const VectorX& u) {
   const std::size_t nodes = mesh.mesh().node_count();

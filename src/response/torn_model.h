@@ -1,10 +1,10 @@
 #pragma once
 
-/// A body of any of the live models while it tears: model and loading of one topology. Tets and nodes keep the numbers
-/// of the torn mesh; what is out of the solve is left out of the model, and held where it is.
+/// A body of any of the live models while it tears: what its model leaves out, and its loading, of one topology. Tets
+/// and nodes keep the numbers of the torn mesh; what is out of the solve is left out of the model, and held where it
+/// is.
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "mesh/torn_mesh.h"
@@ -29,10 +29,6 @@ struct LiveBody {
 
 /// Per tet: nonzero where it is out of the solve.
 [[nodiscard]] std::vector<std::uint8_t> tets_left_out(const mesh::TornMesh& mesh);
-/// `left_out` as of tets_left_out.
-[[nodiscard]] std::shared_ptr<const model::Model> make_torn_model(const mesh::TornMesh& mesh,
-                                                                  const model::ModelSettings& settings,
-                                                                  const std::vector<std::uint8_t>& left_out);
 /// Nodes out of the solve are held at `u` (m, 3 per node).
 [[nodiscard]] model::Loading make_torn_loading(const mesh::TornMesh& mesh, const LiveBody& body,
                                                const model::DisplacementSpace& space, const VectorX& u);

@@ -28,11 +28,12 @@ Expected<ResultFolder> ResultFolder::open(const fs::path& path) {
   if (code)
     return fail("cannot make the folder: " + code.message(), "choose a folder that can be written to", path.string());
   remove_files(path, [](std::string_view name) {
-    return name == "result.vtkhdf" || name == "summary.json" || name == "steps.pvd" || name == "force.csv" ||
-           name == "force.svg";
+    return name == "result.vtkhdf" || name == "summary.json" || name == "steps.pvd" || name == "released.pvd" ||
+           name == "force.csv" || name == "force.svg";
   });
-  remove_files(path / "steps",
-               [](std::string_view name) { return name.starts_with("step_") || name.starts_with("topology_"); });
+  remove_files(path / "steps", [](std::string_view name) {
+    return name.starts_with("step_") || name.starts_with("topology_") || name.starts_with("released_");
+  });
   // An empty series: a run whose first step fails leaves one too, and a folder that cannot be written to is known now.
   if (const Expected<void> written = mesh::write_series(path / "steps.pvd", {}); !written) return fail(written.error());
   return ResultFolder(path);
@@ -53,6 +54,14 @@ Expected<void> ResultFolder::write_topology(std::size_t topology, const mesh::Te
     if (Expected<void> written = mesh::write_mesh_file(path_ / (name + ending), mesh, fields); !written) return written;
   series_.push_back({static_cast<double>(topology), name + ".vtu"});
   return mesh::write_series(path_ / "steps.pvd", series_);
+}
+
+Expected<void> ResultFolder::write_released(double time, const mesh::TetMesh& mesh,
+                                            const std::vector<mesh::Field>& fields) {
+  const std::string name = fmt::format("steps/released_{:04}.vtu", released_.size() + 1);
+  if (Expected<void> written = mesh::write_mesh_file(path_ / name, mesh, fields); !written) return written;
+  released_.push_back({time, name});
+  return mesh::write_series(path_ / "released.pvd", released_);
 }
 
 Expected<void> ResultFolder::write_result(const mesh::TetMesh& mesh, const std::vector<mesh::Field>& fields) {

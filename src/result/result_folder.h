@@ -27,6 +27,8 @@ class ResultFolder {
   /// Writes steps/topology_NNNN.vtu and .vtkhdf and the series up to it, whose value is `topology`.
   Expected<void> write_topology(std::size_t topology, const mesh::TetMesh& mesh,
                                 const std::vector<mesh::Field>& fields);
+  /// Writes steps/released_NNNN.vtu and the series released.pvd up to it, whose value is `time` (s).
+  Expected<void> write_released(double time, const mesh::TetMesh& mesh, const std::vector<mesh::Field>& fields);
   Expected<void> write_result(const mesh::TetMesh& mesh, const std::vector<mesh::Field>& fields);
   Expected<void> write_summary(const nlohmann::ordered_json& summary);
 
@@ -37,6 +39,7 @@ class ResultFolder {
 
   std::filesystem::path path_;
   std::vector<mesh::SeriesEntry> series_;
+  std::vector<mesh::SeriesEntry> released_;
 };
 
 }  // namespace rhexis::result

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "element/cofactor.h"
 #include "element/linear_tet.h"
 #include "model/evaluation.h"
 #include "result/fields.h"
@@ -30,12 +30,6 @@ std::array<Vec3, 4> at_corners(const VectorX& u, const mesh::Tet& tet) {
   return out;
 }
 
-Mat3 cofactor(const Mat3& F) {
-  Mat3 out;
-  for (int i = 0; i < 3; ++i) out.row(i) = F.row((i + 1) % 3).cross(F.row((i + 2) % 3));
-  return out;
-}
-
 struct Solved {
   model::TetFields tets;
   std::vector<double> force;  ///< N, 3 per node: internal force minus weight
@@ -56,7 +50,7 @@ Solved evaluate(const mesh::TornMesh& body, const TornState& state) {
     const Mat3 F = Mat3::Identity() + gradient;
     const Mat3 stress = state.stress ? state.stress(id) : element::small_strain_stress(state.body->elastic, gradient);
     model::set_tet(out.tets, t, F.determinant(), stress.trace() / 3.0, stress);
-    const Mat3 nominal = state.stress ? Mat3(stress * cofactor(F)) : stress;  // first Piola-Kirchhoff
+    const Mat3 nominal = state.stress ? Mat3(stress * element::cofactor(F)) : stress;  // first Piola-Kirchhoff
     for (std::size_t a = 0; a < 4; ++a) {
       const Vec3 force = tet.volume * (nominal * tet.gradient[a] - 0.25 * weight);
       for (std::size_t c = 0; c < 3; ++c)

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "scene/declaration.h"
+#include "scene/value_of.h"
 
 namespace rhexis::scene {
 namespace {
@@ -45,14 +46,31 @@ std::optional<std::size_t> index_of(const std::string& part) {
   return index;
 }
 
-/// Takes the last part of the key out of what holds it; nothing to do when it is not there.
-void erase(Node& holder, const std::string& part) {
-  if (Table* table = holder.as<Table>()) {
-    std::erase_if(*table, [&](const Entry& entry) { return entry.key == part; });
-  } else if (Array* array = holder.as<Array>()) {
-    if (const auto index = index_of(part); index && *index < array->size())
-      array->erase(array->begin() + static_cast<std::ptrdiff_t>(*index));
-  }
+/// Of what is to be taken out and is not there: that is as it should be, unless no scene could have it.
+Expected<void> check_known(const std::vector<std::string>& parts, const Place& place) {
+  const Section* section = find_section(parts.front());
+  const bool is_root = section == nullptr || section->form == SectionForm::root;
+  if (is_root) section = &scene_sections().front();
+  const std::size_t at = is_root ? 0 : section->form == SectionForm::single ? 1 : 2;  // the part that names a key
+  if (at >= parts.size() || section->find(parts[at]) != nullptr) return {};
+  std::vector<std::string> known;
+  for (const Key& key : section->keys) known.push_back(key.name);
+  for (const Section& other : scene_sections())
+    if (is_root && other.form != SectionForm::root) known.push_back(other.name);
+  const auto end = parts.begin() + static_cast<std::ptrdiff_t>(at) + 1;
+  return place.fail("unknown key " + in_quotes(fmt::format("{}", fmt::join(parts.begin(), end, "."))),
+                    suggest(parts[at], known));
+}
+
+/// Takes the last part of the key out of what holds it. False: it is not there.
+bool erase(Node& holder, const std::string& part) {
+  if (Table* table = holder.as<Table>())
+    return std::erase_if(*table, [&](const Entry& entry) { return entry.key == part; }) > 0;
+  Array* array = holder.as<Array>();
+  const auto index = index_of(part);
+  if (array == nullptr || !index || *index >= array->size()) return false;
+  array->erase(array->begin() + static_cast<std::ptrdiff_t>(*index));
+  return true;
 }
 
 /// What a key that is not there yet starts as: the list of [[support]] and its like, else a table.
@@ -97,16 +115,13 @@ Expected<void> apply_override(Node& root, const std::string& override) {
   std::string path;
   for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
     const Table* table = holder->as<Table>();
-    if (text.empty() && table != nullptr && find_entry(*table, parts[i]) == nullptr) return {};
+    if (text.empty() && table != nullptr && find_entry(*table, parts[i]) == nullptr) return check_known(parts, place);
     Expected<Node*> next = child(*holder, parts[i], path, place);
     if (!next) return fail(std::move(next.error()));
     holder = *next;
     path += (i == 0 ? "" : ".") + parts[i];
   }
-  if (text.empty()) {
-    erase(*holder, parts.back());
-    return {};
-  }
+  if (text.empty()) return erase(*holder, parts.back()) ? Expected<void>{} : check_known(parts, place);
   Expected<Node*> target = child(*holder, parts.back(), path, place);
   if (!target) return fail(std::move(target.error()));
   **target = parse_value(text);

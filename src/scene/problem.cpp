@@ -42,6 +42,7 @@ void warn_of_tearing(const Scene& scene, std::vector<std::string>& warnings) {
     const auto unread = place.fail(in_quotes(section) + " is not read by `rhexis solve`", "`rhexis tear` reads it");
     warnings.push_back(unread.value().message());
   };
+  if (scene.dynamics) warn(scene.dynamics->place, "dynamics");
   if (scene.fracture) warn(scene.fracture->place, "fracture");
   if (!scene.cracks.empty()) warn(scene.cracks.front().place, "crack");
   if (scene.interaction.place) warn(*scene.interaction.place, "interaction");

@@ -53,6 +53,7 @@ PullSettings read_pull(const SectionValues& values) {
           values.get<Vec3>("by"),
           values.get<double>("seconds"),
           values.get<double>("hold"),
+          values.get<double>("wait"),
           values.get<std::string>("mode") == "push",
           values.place};
 }

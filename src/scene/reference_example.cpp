@@ -68,7 +68,8 @@ response = "exact"
 at = [0.0, 0.005, 0.02]                   # the nearest point of the surface is held,
 by = [0.0, 0.02, 0.0]                     # moved so far
 seconds = 2.0                             # in this time,
-hold = 0.5                                # and let go after this
+hold = 0.5                                # let go after this,
+wait = 1.0                                # and left alone for this
 )";
 }
 

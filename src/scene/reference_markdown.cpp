@@ -24,7 +24,8 @@ Every mistake is told in one line, with where it is and what would be right:
     rhexis solve vessel.toml --set model.beta=0 --set support.1.x=25% --set sets.top.side=+y
 
 Entries of `[[...]]` are numbered from 0, so are the three numbers of a vector (`gravity.2=-1.6`). Text needs no quotes
-there. An empty value takes a key out: `--set mesh.generate= --set mesh.file=vessel.msh`.
+there. An empty value takes a key out, an entry or a section too, and what is left out has its default: `--set mesh.generate= --set mesh.file=vessel.msh`,
+`--set dynamics=`. One that is not there is out already.
 
 Editors with TOML support complete and check scenes by the JSON Schema beside this page, `scene.schema.json`; with taplo (Even
 Better TOML) a first line `#:schema ../docs/scene.schema.json` does it.

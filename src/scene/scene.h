@@ -132,7 +132,8 @@ struct PullSettings {
   Vec3 at = Vec3::Zero();  ///< m
   Vec3 by = Vec3::Zero();  ///< m
   double seconds = 0.0;
-  double hold = 0.0;  ///< s
+  double hold = 0.0;  ///< s, before the hand lets go
+  double wait = 0.0;  ///< s, after it
   bool push = false;  ///< only where the hand presses, without friction
   Place place;
 };

@@ -1,6 +1,7 @@
 #include "scene/tear_problem.h"
 
 #include "scene/body.h"
+#include "scene/dynamics_choice.h"
 #include "scene/model_choice.h"
 #include "scene/supports.h"
 #include "scene/tractions.h"
@@ -35,19 +36,6 @@ Expected<void> check_large_strain(const Scene& scene) {
     return scene.interaction.place->fail(
         fmt::format("contact \"blend\" adds up reactions, which model {} does not allow", model_name(scene)),
         "contact = \"consistent\"");
-  return {};
-}
-
-/// What moves has a state that moves, and a mass.
-Expected<void> check_dynamics(const Scene& scene) {
-  if (!scene.dynamics) return {};
-  if (scene.model.kind == model::ModelKind::linear || !model::is_live(scene.model.kind))
-    return scene.dynamics->place.fail(
-        fmt::format("dynamics are of a body of large strain, not of model {}", model_name(scene)),
-        R"(kind = "corotated", "geometrically-nonlinear" or "hyperelastic")");
-  if (!(scene.material.density > 0.0))
-    return scene.dynamics->place.fail("dynamics need a mass, and 'material.density' is 0",
-                                      "a density in kg/m3, more than 0");
   return {};
 }
 
@@ -131,7 +119,6 @@ Expected<TearProblem> build_tear_problem(const Scene& scene, Puller puller) {
   if (puller == Puller::script) checked = check_script(scene);
   if (checked && (puller == Puller::record || scene.interaction.response == "recorded")) checked = check_record(scene);
   if (checked) checked = check_large_strain(scene);
-  if (checked) checked = check_dynamics(scene);
   if (!checked) return fail(std::move(checked.error()));
   problem.title = title_of(scene);
   problem.body.elastic = scene.material.elastic;
@@ -145,14 +132,11 @@ Expected<TearProblem> build_tear_problem(const Scene& scene, Puller puller) {
   problem.pulls = scene.pulls;
   problem.notes = scene.notes;
   problem.solver = scene.solver.options;
-  if (scene.dynamics)
-    problem.dynamics = solver::Dynamics{.density = scene.material.density,
-                                        .mass_damping = scene.dynamics->mass_damping,
-                                        .stiffness_damping = scene.dynamics->stiffness_damping,
-                                        .step = scene.dynamics->step};
-
   Expected<Body> body = make_body(scene, problem.notes);
   if (!body) return fail(std::move(body.error()));
+  Expected<std::optional<solver::Dynamics>> dynamics = choose_dynamics(scene, body->mesh, problem.warnings);
+  if (!dynamics) return fail(std::move(dynamics.error()));
+  problem.dynamics = *dynamics;
   const model::DisplacementSpace space = model::make_p1_space(body->mesh);
   Expected<std::vector<model::PrescribedDof>> supports = make_supports(scene, *body, space);
   if (!supports) return fail(std::move(supports.error()));

@@ -45,8 +45,8 @@ enum class Puller { script, hand, record };
 /// Reads or generates the mesh and holds the scene against it. Errors beside those of build_problem: for a script no
 /// `[fracture]`, no `[[pull]]`; for a record, and whoever asks for `response = "recorded"`, other than one `[[crack]]`,
 /// another incision than `keep-nodes`, more topologies than a record may have, a model other than `linear`, a pressure;
-/// for a script `mass-spring` or `taylor-hood`, a pressure on a `linear` body; for all of them blended
-/// contact of a body of large strain, and dynamics of one of small strains, or without a density.
+/// for a script `mass-spring` or `taylor-hood`, a pressure on a `linear` body; for all of them blended contact of a
+/// body of large strain, and dynamics of one without a density.
 [[nodiscard]] Expected<TearProblem> build_tear_problem(const Scene& scene, Puller puller = Puller::script);
 
 }  // namespace rhexis::scene

@@ -50,18 +50,18 @@ StepOutcome Interaction::step(const haptics::HandState& hand, bool fresh) {
 
 void Interaction::follow_script(std::uint64_t passed) {
   const std::vector<scene::PullSettings>& pulls = body_->problem.pulls;
+  const bool was_on = script_.is_on();
   switch (script_.step(pulls, now_ + passed, passed, runs())) {
     case Script::Does::nothing: break;
-    case Script::Does::lets_go:
-      let_go();
-      if (!script_.is_on()) listener_.says(wire::Level::info, "the script has come to its end");
-      break;
+    case Script::Does::lets_go: let_go(); break;
+    case Script::Does::ends: break;
     case Script::Does::grasps: {
       const scene::PullSettings& pull = pulls[script_.pull()];
       if (!hold(pull.at, pull.push ? response::ContactMode::push : response::ContactMode::hold)) script_.end();
-      break;
+      return;
     }
   }
+  if (was_on && !script_.is_on()) listener_.says(wire::Level::info, "the script has come to its end");
 }
 
 void Interaction::move_body() {

@@ -13,6 +13,12 @@ std::uint64_t ticks_of(double seconds) { return static_cast<std::uint64_t>(std::
 Script::Does Script::step(const std::vector<scene::PullSettings>& pulls, std::uint64_t now, std::uint64_t passed,
                           bool runs) {
   if (!on_) return Does::nothing;
+  if (waiting_) {
+    if (runs) taken_ += passed;
+    if (taken_ < ticks_of(pulls[next_].wait)) return Does::nothing;
+    go_to_next(pulls.size());
+    return on_ ? Does::nothing : Does::ends;
+  }
   if (!pulling_) {
     if (next_ >= pulls.size()) {
       end();
@@ -39,14 +45,21 @@ Script::Does Script::step(const std::vector<scene::PullSettings>& pulls, std::ui
   if (taken_ < orders_.moving + ticks_of(pulls[next_].hold)) return Does::nothing;
   pulling_ = false;
   orders_ = {};
-  ++next_;
-  if (next_ == pulls.size()) end();
+  taken_ = 0;
+  waiting_ = ticks_of(pulls[next_].wait) > 0;
+  if (!waiting_) go_to_next(pulls.size());
   return Does::lets_go;
+}
+
+void Script::go_to_next(std::size_t pulls) {
+  waiting_ = false;
+  ++next_;
+  if (next_ == pulls) end();
 }
 
 double script_seconds(const std::vector<scene::PullSettings>& pulls) {
   double sum = 0.0;
-  for (const scene::PullSettings& pull : pulls) sum += pull.seconds + pull.hold;
+  for (const scene::PullSettings& pull : pulls) sum += pull.seconds + pull.hold + pull.wait;
   return sum;
 }
 

@@ -2,28 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <utility>
-
-#include <Eigen/Geometry>
 
 #include "base/check.h"
 
 namespace rhexis::solver {
 
 std::vector<double> tet_masses(const model::Model& model, double density) {
-  const model::DisplacementSpace& space = model.space();
-  RHEXIS_CHECK(space.order == 1, "order {}", space.order);
-  const std::span<const std::uint8_t> out = model.left_out();
-  std::vector<double> mass(space.connectivity.size() / 4, 0.0);
-  for (std::size_t t = 0; t < mass.size(); ++t) {
-    if (!out.empty() && out[t] != 0) continue;
-    const auto corner = [&](std::size_t a) -> const Vec3& {
-      return space.nodes[static_cast<std::size_t>(space.connectivity[4 * t + a])];
-    };
-    const Vec3 x = corner(0);
-    mass[t] = density * (corner(1) - x).cross(corner(2) - x).dot(corner(3) - x) / 6.0;
-  }
+  std::vector<double> mass = model.tet_volumes();
+  for (double& m : mass) m *= density;
   return mass;
 }
 

@@ -26,7 +26,8 @@ constexpr int kMostFirstIterations = 200;
 constexpr double kSmallMove = 0.01;
 /// Of a step that is to lessen the energy.
 constexpr int kEnergyHalvings = 12;
-/// Late frames in a row that do not lessen the residual by kProgress, after which the state is given up.
+/// Frames in a row that are late, or do not end a time step, and do not lessen the residual by kProgress, after which
+/// the state is given up.
 constexpr int kMostIdleFrames = 20;
 constexpr double kProgress = 0.9;
 /// Corrections of a frame that is late, and how much further each is solved.
@@ -42,9 +43,9 @@ constexpr double kSmallStep = 1e-3;
 }  // namespace
 
 LiveOptions moving(LiveOptions options) {
-  options.corrections = 4;
-  options.forcing = 0.02;
-  options.iterations = 20;
+  options.corrections = std::max(options.corrections, 4);
+  options.forcing = std::min(options.forcing, 0.02);
+  options.iterations = std::max(options.iterations, 20);
   return options;
 }
 
@@ -79,7 +80,6 @@ void LiveEquilibrium::make_room() {
   }
   good_ = state_;
   idle_frames_ = 0;
-  waiting_ = 0;
   cautious_ = false;
 }
 
@@ -198,18 +198,25 @@ bool LiveEquilibrium::moves() const {
 
 bool LiveEquilibrium::begin_step() {
   RHEXIS_CHECK(inertia_, "a body without mass");
-  const bool ended = now_.relative <= options_.tolerance;
-  if (!ended && ++waiting_ <= kMostIdleFrames) return false;
+  if (!(now_.relative <= options_.tolerance)) return false;
   now_ = evaluate(state_);  // whose internal force it needs
-  if (ended) {
-    inertia_->begin(state_.u, internal_);
-  } else {
-    inertia_->halt(state_.u, internal_);
-  }
+  inertia_->begin(state_.u, internal_);
   now_ = evaluate(state_);
-  waiting_ = 0;
+  good_ = state_;
+  idle_frames_ = 0;
   begun_ = true;
   return true;
+}
+
+Vec3 LiveEquilibrium::velocity() const {
+  RHEXIS_CHECK(inertia_ && held_, "without mass, or not held");
+  return (held_->of(state_.u) - held_->of(inertia_->motion().u)) / inertia_->step();
+}
+
+Vec3 LiveEquilibrium::force_rate() const {
+  RHEXIS_CHECK(inertia_ && held_, "without mass, or not held");
+  return (held_->of(internal_) - held_->of(inertia_->motion().internal)) /
+         (held_->weight.squaredNorm() * inertia_->step());
 }
 
 LiveFrame LiveEquilibrium::step(const Vec3& hand) {
@@ -221,8 +228,12 @@ LiveFrame LiveEquilibrium::settle() {
   return advance(nullptr);
 }
 
-/// f + C^-1 Z^T r, r the residual of the state with its multiplier.
-void LiveEquilibrium::correct_force() { force_ = multiplier_ + stiffness_ * answer_.dot(residual_); }
+/// f + C^-1 Z^T r, r the residual of the state with its multiplier; f alone while Z is none, where the tangent has no
+/// answer.
+void LiveEquilibrium::correct_force() {
+  const Vec3 corrected = multiplier_ + stiffness_ * answer_.dot(residual_);
+  force_ = corrected.allFinite() ? corrected : multiplier_;
+}
 
 /// The first guess: the last tangent's answer to the move of the hand, shortened where a tet would invert. False: there
 /// is none.
@@ -330,12 +341,15 @@ double LiveEquilibrium::stored_energy(const model::State& state) {
   return model_->energy(state) + linear_.energy_of_pressure(residual_.lambda);
 }
 
-/// A state that does not find back is given up for the last one that was near to equilibrium, or from which it set out.
+/// A state that does not find back is given up for the last one that was near to equilibrium, or from which it set out;
+/// and so is the motion of a body whose time step does not end. That goes back to where its step began at the most.
 void LiveEquilibrium::keep_good(LiveFrame& frame) {
   if (now_.relative <= options_.late) {
     good_ = state_;
-    idle_frames_ = 0;
     cautious_ = false;
+  }
+  if (now_.relative <= (inertia_ ? options_.tolerance : options_.late)) {
+    idle_frames_ = 0;
     return;
   }
   if (idle_frames_ == 0 || now_.norm < kProgress * least_) {
@@ -351,7 +365,8 @@ void LiveEquilibrium::keep_good(LiveFrame& frame) {
     idle_frames_ = 0;
     cautious_ = !cautious_;
     worn_ = frame.gave_up = true;
-    frame.trouble = "no equilibrium near: back to the last one";
+    frame.trouble = inertia_ ? "a time step does not end: the motion is taken out of the body"
+                             : "no equilibrium near: back to the last one";
   }
 }
 
@@ -364,7 +379,8 @@ LiveFrame LiveEquilibrium::advance(const Vec3* hand) {
   if (linear_.is_refreshing()) beside.emplace();
   frame.reached = hand == nullptr || now_.relative <= options_.late || begun_;
   begun_ = false;
-  if (hand != nullptr && frame.reached && !follow(*hand, frame)) {
+  const bool stays = hand != nullptr && frame.reached && !follow(*hand, frame);
+  if (stays && !inertia_) {  // the step of a body with mass goes on all the same
     frame.residual = now_.relative;
     return frame;
   }

@@ -45,12 +45,13 @@ struct LiveFrame {
   int linear_iterations = 0;
   double residual = 0.0;   ///< relative to internal and external force, after the frame
   bool refreshed = false;  ///< a preconditioner that was made in the background was taken up
-  bool gave_up = false;    ///< it did not come nearer to equilibrium for long, and is back where it began; or, without
-                           ///< a hand, no correction brings it nearer
+  bool gave_up = false;    ///< it did not come nearer to equilibrium for long, and is back where it was near last, with
+                           ///< mass without motion; or, without a hand, no correction brings it nearer
   std::string trouble;     ///< one line, empty when there was none
 };
 
-/// Of a body that moves a frame may end a time step, which takes more of it than to follow a hand does.
+/// Of a body that moves a frame may end a time step, which takes more of it than to follow a hand does: the options,
+/// with as many corrections and iterations at the least, and as small a `forcing` at the most, as that needs.
 [[nodiscard]] LiveOptions moving(LiveOptions options);
 
 class LiveEquilibrium {
@@ -77,8 +78,7 @@ class LiveEquilibrium {
   /// One frame without a hand.
   LiveFrame settle();
 
-  /// The next time step of a body with mass begins. False: the one under way has not ended yet, and goes on; after many
-  /// such calls the motion is taken out of the body, and the next one begins from there.
+  /// The next time step of a body with mass begins. False: the one under way has not ended yet, and goes on.
   bool begin_step();
   /// It would go on moving: `at_rest` and `tolerance` say what counts as none.
   [[nodiscard]] bool moves() const;
@@ -101,6 +101,10 @@ class LiveEquilibrium {
   [[nodiscard]] Mat3 compliance() const { return compliance_ / scale(); }
   /// Its inverse, N/m: between frames the hand at d feels force() + stiffness() (d - point()).
   [[nodiscard]] Mat3 stiffness() const { return scale() * stiffness_; }
+  /// Of a body with mass that is held, in the time step under way: the velocity of the point, m/s, and how fast the
+  /// internal force at it grows, N/s. So both go on where every node does as in this step.
+  [[nodiscard]] Vec3 velocity() const;
+  [[nodiscard]] Vec3 force_rate() const;
 
  private:
   struct Trial {
@@ -154,14 +158,13 @@ class LiveEquilibrium {
   Mat3 from_gap_ = Mat3::Zero();  ///< (N Z)^-1
 
   model::State trial_;
-  model::State good_;            ///< the last one near to equilibrium
-  double least_ = 0.0;           ///< N, residual of the frames since it was late, the least
-  int idle_frames_ = 0;          ///< late frames in a row that have not lessened it
+  model::State good_;            ///< the last one near to equilibrium, of a body with mass of the step under way
+  double least_ = 0.0;           ///< N, residual of the frames since it was late, or a time step began, the least
+  int idle_frames_ = 0;          ///< such frames in a row that have not lessened it
   bool cautious_ = false;        ///< since it gave up: no step that lets the residual grow
   bool worn_ = false;            ///< the frame has found the preconditioner wanting
   int iterations_when_new_ = 0;  ///< of the first correction with it; 0: there was none
   bool begun_ = false;           ///< a time step, since the last frame
-  int waiting_ = 0;              ///< calls of begin_step that the one under way has turned down
   double size_of_body_ = 0.0;    ///< m
   double small_force_ = 0.0;     ///< N, the least since it took hold
   VectorX du_, dlambda_, rhs_u_, rhs_lambda_;

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include "base/check.h"
+#include "element/cofactor.h"
 
 namespace rhexis::solver {
 namespace {
@@ -18,8 +19,7 @@ Mat3 rotation_of(const Mat3& F) {
   if (!(determinant > 0.0) || !std::isfinite(determinant)) return Mat3::Identity();
   Mat3 R = F / std::cbrt(determinant);
   for (int k = 0; k < kIterations; ++k) {
-    Mat3 cofactor;  // det(R) R^-T
-    cofactor << R.row(1).cross(R.row(2)), R.row(2).cross(R.row(0)), R.row(0).cross(R.row(1));
+    const Mat3 cofactor = element::cofactor(R);
     R = (0.5 * (R + cofactor / R.row(0).dot(cofactor.row(0)))).eval();
   }
   return R.allFinite() ? R : Mat3(Mat3::Identity());

@@ -35,7 +35,7 @@ seconds = 6.0
 constexpr double kForceScale = 0.2;
 
 constexpr milliseconds kLook{10};
-/// Between the letting go and the reset: no law is out of date in a hand that holds nothing.
+/// Between the letting go and the reset.
 constexpr milliseconds kRest{200};
 constexpr milliseconds kPatience{10'000};
 

@@ -1,4 +1,4 @@
-// Ctrl-C, and worse, during `rhexis solve`: the load steps done so far stay, every file is whole, nothing piles up.
+// Ctrl-C, SIGTERM, and worse, during a run: what was done so far stays, every file is whole, nothing piles up.
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -25,28 +25,28 @@ using nlohmann::json;
 using std::chrono::milliseconds;
 using testing::HasSubstr;
 
-/// `rhexis solve scenes/vessel.toml ARGUMENTS --out OUT`, going on beside the test.
-class Solving {
+/// `rhexis ARGUMENTS`, going on beside the test.
+class Running {
  public:
-  Solving(const fs::path& out, std::vector<std::string> arguments) : errors_(out.parent_path() / "errors") {
-    std::vector<std::string> words{RHEXIS_COMMAND, "solve", "scenes/vessel.toml", "--quiet", "--out", out.string()};
+  Running(fs::path errors, std::vector<std::string> arguments) : errors_(std::move(errors)) {
+    std::vector<std::string> words{RHEXIS_COMMAND};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
     process_ = ::fork();
     if (process_ != 0) return;
-    const int errors = ::open(errors_.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
-    if (::chdir(RHEXIS_SOURCE_DIR) == 0 && ::dup2(errors, STDERR_FILENO) >= 0) ::execv(argv[0], argv.data());
+    const int file = ::open(errors_.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
+    if (::chdir(RHEXIS_SOURCE_DIR) == 0 && ::dup2(file, STDERR_FILENO) >= 0) ::execv(argv[0], argv.data());
     ::_exit(127);
   }
-  ~Solving() {
+  ~Running() {
     if (ended()) return;
     send(SIGKILL);
     wait();
   }
-  Solving(const Solving&) = delete;
-  Solving& operator=(const Solving&) = delete;
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
 
   void send(int signal) const { ::kill(process_, signal); }
   bool ended() {
@@ -82,6 +82,20 @@ class Solving {
   fs::path errors_;
   pid_t process_ = -1;
   std::optional<int> status_;
+};
+
+/// `rhexis solve scenes/vessel.toml ARGUMENTS --out OUT`.
+class Solving : public Running {
+ public:
+  Solving(const fs::path& out, const std::vector<std::string>& arguments)
+      : Running(out.parent_path() / "errors", all(out, arguments)) {}
+
+ private:
+  static std::vector<std::string> all(const fs::path& out, const std::vector<std::string>& arguments) {
+    std::vector<std::string> words{"solve", "scenes/vessel.toml", "--quiet", "--out", out.string()};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    return words;
+  }
 };
 
 std::vector<fs::path> files_in(const fs::path& folder) {
@@ -125,11 +139,16 @@ int check_whole(const fs::path& out) {
   return steps;
 }
 
-TEST(Interrupt, PressedOnceTheStepInFlightIsFinishedAndTheResultsWritten) {
+/// By Ctrl-C, or by whoever watches over programs.
+class InterruptBy : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Signals, InterruptBy, testing::Values(SIGINT, SIGTERM),
+                         [](const auto& test) { return test.param == SIGINT ? "SIGINT" : "SIGTERM"; });
+
+TEST_P(InterruptBy, OnceTheStepInFlightIsFinishedAndTheResultsWritten) {
   const fs::path out = test::fresh_folder("once") / "out";
   Solving solving(out, {"--set", "solver.steps=1000", "--set", "mesh.nodes=200"});
   ASSERT_TRUE(solving.wait_for(out / "steps/step_0002.vtu")) << solving.errors();
-  solving.send(SIGINT);
+  solving.send(GetParam());
   const int status = solving.wait();
   ASSERT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 1);
@@ -149,20 +168,58 @@ TEST(Interrupt, PressedOnceTheStepInFlightIsFinishedAndTheResultsWritten) {
   for (const json& field : json::parse(compared.out)["comparisons"][0]["fields"]) EXPECT_EQ(field["largest"], 0.0);
 }
 
-TEST(Interrupt, PressedAgainTheProgramEndsAtOnce) {
+TEST_P(InterruptBy, AgainTheProgramEndsAtOnce) {
   const fs::path out = test::fresh_folder("twice") / "out";
   // One step of this takes many times longer than what is waited below.
   Solving solving(out, {"--set", "model.kind=taylor-hood", "--set", "model.beta=", "--set", "mesh.nodes=3000"});
   ASSERT_TRUE(solving.wait_for(out / "steps.pvd")) << solving.errors();
   std::this_thread::sleep_for(milliseconds(50));
-  solving.send(SIGINT);
+  solving.send(GetParam());
   std::this_thread::sleep_for(milliseconds(50));
-  solving.send(SIGINT);
+  solving.send(GetParam());
   const int status = solving.wait();
   ASSERT_TRUE(WIFSIGNALED(status));
-  EXPECT_EQ(WTERMSIG(status), SIGINT);
+  EXPECT_EQ(WTERMSIG(status), GetParam());
   check_whole(out);
   EXPECT_FALSE(fs::exists(out / "summary.json"));
+}
+
+TEST_P(InterruptBy, ATearEndsAfterItsTickWithWhatWasTorn) {
+  const fs::path folder = test::fresh_folder("tear");
+  const fs::path out = folder / "out";
+  Running tearing(folder / "errors", {"tear", "scenes/plate-tear.toml", "--quiet", "--out", out.string()});
+  ASSERT_TRUE(tearing.wait_for(out / "steps/topology_0002.vtu")) << tearing.errors();
+  tearing.send(GetParam());
+  const int status = tearing.wait();
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_THAT(tearing.errors(), HasSubstr("scenes/plate-tear.toml: stopped at 0."));
+  const json summary = json::parse(test::slurp(out / "summary.json"));
+  EXPECT_FALSE(summary["converged"]);
+  EXPECT_GE(summary["advances"].size(), 2U);
+  EXPECT_TRUE(fs::exists(out / "result.vtkhdf"));
+  EXPECT_EQ(count_temporaries(out), 0);
+}
+
+TEST_P(InterruptBy, ALiveSceneEndsWellWithItsRecordingClosed) {
+  const fs::path folder = test::fresh_folder("play");
+  const fs::path page = folder / "page";
+  fs::create_directories(page);
+  std::ofstream(page / "index.html") << "<html></html>";
+  const fs::path recordings = folder / "recordings";
+  Running playing(folder / "errors",
+                  {"play", "scenes/plate-tear.toml", "--no-browser", "--port", "0", "--device", "script", "--record",
+                   "--page", page.string(), "--recordings", recordings.string()});
+  ASSERT_TRUE(playing.wait_for(recordings)) << playing.errors();
+  std::this_thread::sleep_for(milliseconds(700));
+  playing.send(GetParam());
+  const int status = playing.wait();
+  ASSERT_TRUE(WIFEXITED(status)) << playing.errors();
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  const std::vector<fs::path> files = files_in(recordings);
+  ASSERT_EQ(files.size(), 1U) << playing.errors();
+  const test::Ran checked = test::run_rhexis("replay --check '" + files.front().string() + "'");
+  EXPECT_EQ(checked.code, 0) << checked.err;
 }
 
 TEST(Interrupt, KilledWhileItWritesWhatIsThereIsWholeAndTheNextRunSweepsUp) {

@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <numeric>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "base/vec.h"
 #include "mesh/io/mesh_file.h"
+#include "tests/support/measured.h"
 #include "tests/support/run_command.h"
 
 namespace rhexis {
@@ -40,10 +43,63 @@ TEST(TearCommand, ASoftBarNearIncompressibilityHasTheForceOfASoftBar) {
       test::run_rhexis("tear scenes/bar-soft.toml --set material.poisson=0.49 --json --out '" + out.string() + "'");
   ASSERT_EQ(ran.code, 0) << ran.err;
   const json summary = json::parse(ran.out);
+  EXPECT_EQ(summary["response"], "live");
   EXPECT_GE(summary["advances"].size(), 3U);
   EXPECT_GT(summary["largest_force"].get<double>(), 0.1);
   EXPECT_LT(summary["largest_force"].get<double>(), 1.0);  // 0.37 N
   EXPECT_THAT(test::slurp(out / "force.csv"), testing::Not(HasSubstr("nan")));
+}
+
+/// Pulled aside, torn some way and let go, it swings to the other side and back, and rings down.
+TEST(TearCommand, ABarWithMassThatIsLetGoSwingsAndIsShown) {
+  const fs::path out = test::fresh_folder("swing");
+  const test::Ran ran = test::run_rhexis("tear scenes/bar-swing.toml --json --out '" + out.string() + "'");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const json summary = json::parse(ran.out);
+  EXPECT_EQ(summary["pieces"], 1);
+  EXPECT_GE(summary["advances"].size(), 2U);
+  const std::string series = test::slurp(out / "released.pvd");
+  std::vector<double> aside;  // m, of the middle of the end, across the way of the crack
+  for (int k = 1; k <= 50; ++k) {
+    const std::string name = fmt::format("steps/released_{:04}.vtu", k);
+    EXPECT_THAT(series, HasSubstr(name));
+    EXPECT_THAT(series, HasSubstr(fmt::format("timestep=\"{}\"", (1000 + 20 * k) / 1000.0)));
+    const Expected<mesh::MeshFile> state = mesh::read_mesh_file(out / name);
+    ASSERT_TRUE(state) << state.error().message();
+    double sum = 0.0;
+    int count = 0;
+    for (std::size_t node = 0; node < state->mesh.node_count(); ++node) {
+      if (state->mesh.nodes[node][0] < 0.0399) continue;
+      sum += field_of(*state, "displacement").values[3 * node + 2];
+      ++count;
+    }
+    aside.push_back(sum / count);
+  }
+  EXPECT_FALSE(fs::exists(out / "steps/released_0051.vtu"));
+  const double rest = std::accumulate(aside.end() - 10, aside.end(), 0.0) / 10.0;
+  int turns = 0;
+  for (std::size_t k = 1; k < aside.size(); ++k) turns += (aside[k] > rest) != (aside[k - 1] > rest) ? 1 : 0;
+  const auto spread = [&](auto from, auto to) {
+    const auto [least, most] = std::minmax_element(from, to);
+    return *most - *least;
+  };
+  const double first = spread(aside.begin(), aside.begin() + 10);
+  const double last = spread(aside.end() - 10, aside.end());
+  test::measured("bar-swing: {} times through its rest, swings of {:.1f} mm in the first 0.2 s and {:.1f} in the last",
+                 turns, 1e3 * first, 1e3 * last);
+  EXPECT_GE(turns, 4);
+  EXPECT_GT(first, 3e-3);
+  EXPECT_LT(last, 0.5 * first);
+  // Nobody holds it: no force; and a line a tick.
+  std::ifstream trace(out / "force.csv");
+  std::string line;
+  int ticks = -1;
+  while (std::getline(trace, line)) {
+    if (++ticks > 1000) {
+      EXPECT_THAT(line, HasSubstr(",0,0,0,0,0,0,"));
+    }
+  }
+  EXPECT_EQ(ticks, 2000);
 }
 
 TEST(TearCommand, ASoftVesselTearsByItsToughness) {

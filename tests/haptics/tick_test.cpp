@@ -162,20 +162,6 @@ TEST(HapticTick, ALatePhysicsIsHeldThenFadesThenIsLost) {
   }
 }
 
-TEST(HapticTick, ALawThatStaysOutOfDateFadesTooAlthoughThePhysicsLives) {
-  Loop loop = pointing_loop(make_law(300.0 * Mat3::Identity()));
-  const Vec3 there(0.01, 0.0, 0.0);
-  const double full = loop.go_to(Vec3::Zero(), there, 100).force.norm();
-  loop.law.flags |= ForceSnapshot::out_of_date;
-  for (int k = 0; k < 100; ++k) EXPECT_NEAR(loop.go(there).force.norm(), full, 1e-12);
-  for (int k = 0; k < 100; ++k) loop.go(there);
-  EXPECT_NEAR(loop.last.force.norm(), 0.5 * full, 0.02 * full);
-  EXPECT_TRUE(has(loop.last, HandState::faded));
-  EXPECT_EQ(loop.last.law_age, 0u);
-  loop.law.flags &= ~static_cast<std::uint32_t>(ForceSnapshot::out_of_date);
-  EXPECT_NEAR(loop.go_to(there, there, 1).force.norm(), full, 1e-12);
-}
-
 TEST(HapticTick, TheGripClosesInARampAndSlipsUntilThen) {
   Loop loop = strong_loop(make_law(800.0 * Mat3::Identity()));
   const TickSettings settings = settings_for(strong_device());

@@ -86,6 +86,7 @@ at = [0.10, 0.0, 0.005]
 by = [-0.12, 0.0, 0.0]
 seconds = 2.0
 hold = 0.5
+wait = 0.25
 )";
 
 TEST(GoodScene, EverythingIsRead) {
@@ -163,6 +164,7 @@ TEST(GoodScene, EverythingIsRead) {
   EXPECT_EQ(scene.pulls[0].by, Vec3(-0.12, 0.0, 0.0));
   EXPECT_EQ(scene.pulls[0].seconds, 2.0);
   EXPECT_EQ(scene.pulls[0].hold, 0.5);
+  EXPECT_EQ(scene.pulls[0].wait, 0.25);
 
   EXPECT_THAT(scene.warnings, IsEmpty());
   EXPECT_THAT(scene.notes, IsEmpty());

@@ -48,6 +48,18 @@ TEST(Override, EmptyValueTakesOut) {
   EXPECT_EQ(scene_with({"model.beta="}).model.beta, std::nullopt);
   EXPECT_EQ(scene_with({"support.1="}).supports.size(), 1U);
   EXPECT_FALSE(scene_with({"fracture.strength="}).fracture);
+  EXPECT_TRUE(scene_with({"sets.tip="}).sets.size() == 1U);
+}
+
+TEST(Override, WhatIsNotThereIsOutAlreadyAndWhatNoSceneHasIsAnError) {
+  for (const char* out : {"fracture=", "pull.0=", "pull.0.by=", "support.7=", "sets.none=", "sets.none.side="})
+    EXPECT_EQ(scene_with({out}).supports.size(), 2U) << out;
+  const auto line = [](const std::string& override) { return message_of(kGood, {override}); };
+  EXPECT_EQ(line("model.beat="), "--set model.beat=: unknown key 'model.beat' (did you mean 'beta'?)");
+  EXPECT_EQ(line("dynamics.stpe="), "--set dynamics.stpe=: unknown key 'dynamics.stpe' (did you mean 'step'?)");
+  EXPECT_EQ(line("support.0.w="), "--set support.0.w=: unknown key 'support.0.w' (known: set, x, y, z)");
+  EXPECT_EQ(line("sets.far.sdie="), "--set sets.far.sdie=: unknown key 'sets.far.sdie' (did you mean 'side'?)");
+  EXPECT_EQ(line("dynamcis="), "--set dynamcis=: unknown key 'dynamcis' (did you mean 'dynamics'?)");
 }
 
 TEST(Override, LaterOnesWin) { EXPECT_EQ(scene_with({"model.beta=1", "model.beta=2"}).model.beta, 2.0); }

@@ -181,12 +181,13 @@ TEST(Problem, WhatIsSaidOfTearingIsNotRead) {
   const std::string crack = "[[crack]]\nfrom = [0, 0, 0]\nto = [0.01, 0, 0]\n";
   const std::string pull = "[[pull]]\nat = [0, 0, 0]\nby = [0, 0, 1]\n";
   const std::string text = spoil("beta = 100.0", "beta = 0") + "[fracture]\nstrength = 1e5\n" + crack + crack +
-                           "[interaction]\nmax_force = 3.0\n" + pull + pull;
+                           "[dynamics]\n[interaction]\nmax_force = 3.0\n" + pull + pull;
   EXPECT_THAT(build(text).warnings,
-              ElementsAre("s.toml:34: 'fracture' is not read by `rhexis solve` (`rhexis tear` reads it)",
+              ElementsAre("s.toml:42: 'dynamics' is not read by `rhexis solve` (`rhexis tear` reads it)",
+                          "s.toml:34: 'fracture' is not read by `rhexis solve` (`rhexis tear` reads it)",
                           "s.toml:36: 'crack' is not read by `rhexis solve` (`rhexis tear` reads it)",
-                          "s.toml:42: 'interaction' is not read by `rhexis solve` (`rhexis tear` reads it)",
-                          "s.toml:44: 'pull' is not read by `rhexis solve` (`rhexis tear` reads it)"));
+                          "s.toml:43: 'interaction' is not read by `rhexis solve` (`rhexis tear` reads it)",
+                          "s.toml:45: 'pull' is not read by `rhexis solve` (`rhexis tear` reads it)"));
 }
 
 TEST(Problem, AFreeRimUnderPressureTakesTheDirectSolver) {

@@ -70,6 +70,55 @@ TEST(Interaction, EveryLiveModelIsTornAndSwitchedWhileItIsOpen) {
   }
 }
 
+/// It has its mass with the models that can have one.
+TEST(Interaction, TheModelIsSwitchedOfASceneWithDynamicsToo) {
+  InteractionCase live(
+      test::replaced(test::kLivePlate, "kind = \"linear\"", "kind = \"linear\"\n[dynamics]\nstep = 0.004"));
+  for (const char* model : {"linear", "corotated", "mass-spring", "hyperelastic", "linear"}) {
+    live.set("model.kind", model);
+    const TearSession& tear = live.interaction.tear();
+    const bool moves = model != std::string("linear") && model != std::string("mass-spring");
+    EXPECT_EQ(tear.model_name(), moves ? model : "linear");
+    EXPECT_EQ(tear.settings().dynamics.has_value(), moves) << model;
+    EXPECT_EQ(testing::Value(live.interaction.body().problem.warnings,
+                             testing::Contains(testing::HasSubstr("'dynamics' is not read by model"))),
+              !moves)
+        << model;
+    live.heard.topologies.clear();
+    for (const StepOutcome& step : live.run_script()) ASSERT_TRUE(step.force.allFinite()) << model;
+    EXPECT_GT(live.heard.topologies.size(), 3U) << model;
+  }
+}
+
+TEST(Interaction, AfterAPullTheScriptWaitsBeforeTheNextAndBeforeItsEnd) {
+  const std::string two =
+      test::replaced(test::kLivePlate, "seconds = 0.5\n",
+                     "seconds = 0.05\nhold = 0.01\nwait = 0.1\n[[pull]]\nat = [0.10, 0.0, 0.005]\nby = [-0.001, 0.0, "
+                     "0.0]\nseconds = 0.02\nwait = 0.03\n");
+  InteractionCase live(two);
+  live.begin_script();
+  std::vector<bool> held;
+  while (live.interaction.is_scripted()) {
+    ASSERT_LT(held.size(), 1000U);
+    live.step();
+    held.push_back(live.interaction.tear().hand().holds());
+    if (!live.interaction.is_scripted()) break;
+    EXPECT_THAT(live.heard.texts, testing::Not(testing::Contains("the script has come to its end")));
+  }
+  EXPECT_THAT(live.heard.texts, testing::Contains("the script has come to its end"));
+  // Each pull has a step to take hold in, and lets go in its last tick; time stands still while the body tears.
+  std::vector<std::size_t> lengths{0};
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    if (k > 0 && held[k] != held[k - 1]) lengths.push_back(0);
+    ++lengths.back();
+  }
+  ASSERT_EQ(lengths.size(), 4U);
+  EXPECT_GE(lengths[0], 60U);
+  EXPECT_EQ(lengths[1], 101U);
+  EXPECT_EQ(lengths[2], 20U);
+  EXPECT_EQ(lengths[3], 31U);
+}
+
 TEST(Interaction, AnUndoneTearIsAnotherBodyThanTheOneBefore) {
   InteractionCase live;
   const std::uint64_t intact = live.step().fingerprint;
