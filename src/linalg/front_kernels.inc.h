@@ -10,6 +10,14 @@
 #pragma GCC diagnostic ignored "-Wuninitialized"
 #endif
 
+// The loops over sums in registers have to be unrolled, or the sums lie in memory. Not by -O3 for the whole unit: the
+// loops that gcc then peels until they are aligned round differently from address to address.
+#if defined(__GNUC__) && !defined(__clang__)
+#define RHEXIS_UNROLLED _Pragma("GCC unroll 32")
+#else
+#define RHEXIS_UNROLLED
+#endif
+
 #define RHEXIS_JOIN_NAMES(a, b) a##_##b
 #define RHEXIS_JOIN(a, b) RHEXIS_JOIN_NAMES(a, b)
 #define Eigen RHEXIS_JOIN(Eigen_fronts, RHEXIS_SIMD_NAMESPACE)
@@ -162,12 +170,16 @@ void multiply_rows(const float* W, int ld, int columns, const float* X, int ldx,
   Packet sum[packets][lanes] = {};
   for (int j = 0; j < columns; ++j) {
     const float* const w = W + static_cast<std::ptrdiff_t>(j) * ld;
+    RHEXIS_UNROLLED
     for (int p = 0; p < packets; ++p) {
       const Packet value = load(w + p * kPacket);
+      RHEXIS_UNROLLED
       for (int l = 0; l < lanes; ++l) sum[p][l] += value * X[l * ldx + j];
     }
   }
+  RHEXIS_UNROLLED
   for (int p = 0; p < packets; ++p) {
+    RHEXIS_UNROLLED
     for (int l = 0; l < lanes; ++l) store(sum[p][l], Y + l * ldy + p * kPacket);
   }
 }
@@ -192,12 +204,16 @@ template <int lanes, int together>
 void multiply_columns(const float* W, int ld, int rows, const float* X, int ldx, float* Y, int ldy) {
   Packet sum[together][lanes] = {};
   for (int i = 0; i < rows; i += kPacket) {
+    RHEXIS_UNROLLED
     for (int c = 0; c < together; ++c) {
       const Packet value = load(W + static_cast<std::ptrdiff_t>(c) * ld + i);
+      RHEXIS_UNROLLED
       for (int l = 0; l < lanes; ++l) sum[c][l] += value * load(X + l * ldx + i);
     }
   }
+  RHEXIS_UNROLLED
   for (int c = 0; c < together; ++c) {
+    RHEXIS_UNROLLED
     for (int l = 0; l < lanes; ++l) Y[l * ldy + c] = sum_of(sum[c][l]);
   }
 }
