@@ -16,7 +16,6 @@
 namespace rhexis::linalg {
 namespace {
 
-
 constexpr double kRounding = 1e-15;
 /// Single precision, rows of a few dozen terms.
 constexpr double kSingle = 1e-6;
