@@ -156,5 +156,3 @@ const bool registered = [] {
 
 }  // namespace
 }  // namespace rhexis
-
-BENCHMARK_MAIN();

@@ -12,11 +12,13 @@
 
 #include "bench/rivals/bar.h"
 #include "bench/rivals/contest.h"
+#include "linalg/blas_kernels.h"
 
 using namespace rhexis;          // NOLINT
 using namespace rhexis::rivals;  // NOLINT
 
 int main(int argc, char** argv) {
+  linalg::begin_with_fitting_blas(argv);
   CLI::App app("Rhexis beside Bullet and CalculiX on bars");
   std::vector<int> nodes{2000, 8000};
   std::vector<std::string> laws{"linear", "neo-hookean", "answers"};

@@ -10,6 +10,7 @@
 
 #include "apps/command.h"
 #include "apps/command_words.h"
+#include "linalg/blas_kernels.h"
 
 namespace rhexis::apps {
 
@@ -83,6 +84,7 @@ int run(int argc, char** argv) {
 }  // namespace rhexis::apps
 
 int main(int argc, char** argv) {
+  rhexis::linalg::begin_with_fitting_blas(argv);
   try {
     return rhexis::apps::run(argc, argv);
   } catch (const std::bad_alloc&) {

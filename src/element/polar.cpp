@@ -3,10 +3,29 @@
 #include <Eigen/Dense>
 
 #include "base/vec.h"
+#include "material/tensor.h"
 
 namespace rhexis::element {
+namespace {
+
+inline constexpr int kWidth = 1;
+
+// clang-format off
+#include "element/simd/pack.h"
+#include "element/simd/polar.h"
+// clang-format on
+
+}  // namespace
 
 void nearest_rotation(const double (&F)[9], double (&R)[9]) {
+  Pack f[9], cof[9];
+  for (int i = 0; i < 9; ++i) f[i] = F[i];
+  cofactor(f, cof);
+  const Polar polar = polar_of(f, f[0] * cof[0] + f[1] * cof[1] + f[2] * cof[2]);
+  for (int i = 0; i < 9; ++i) R[i] = polar.R[i].v[0];
+}
+
+void rotation_by_eigenvectors(const double (&F)[9], double (&R)[9]) {
   using RowMat3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   const Mat3 f = Eigen::Map<const RowMat3>(F);
   Eigen::Map<RowMat3> r(R);

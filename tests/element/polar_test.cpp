@@ -27,10 +27,12 @@ Mat3 by_svd(const Mat3& F) {
   return U * svd.matrixV().transpose();
 }
 
-Mat3 scalar(const Mat3& F) {
+using OfOneTet = void (*)(const double (&)[9], double (&)[9]);
+
+Mat3 scalar(OfOneTet rotation, const Mat3& F) {
   double f[9], r[9];
   Eigen::Map<RowMat3>{f} = F;
-  element::nearest_rotation(f, r);
+  rotation(f, r);
   return Eigen::Map<RowMat3>(r);
 }
 
@@ -166,19 +168,25 @@ TEST_P(BatchedPolar, OneBadLaneLeavesTheOthersAlone) {
 INSTANTIATE_TEST_SUITE_P(EachInstructionSet, BatchedPolar, testing::Values("portable", "avx2", "avx512"),
                          [](const auto& tested) { return std::string(tested.param); });
 
-TEST(NearestRotation, AgreesWithTheSvdAndDegenerateIsFixed) {
+class NearestRotation : public testing::TestWithParam<OfOneTet> {};
+
+TEST_P(NearestRotation, AgreesWithTheSvdAndDegenerateIsFixed) {
   Rotations rotation(21);
   for (int trial = 0; trial < 500; ++trial) {
     const Mat3 F =
         rotation() *
         Vec3(1.5 + 0.3 * std::tanh(rotation.normal()), 1.0, 0.6 * std::tanh(rotation.normal())).asDiagonal() *
         rotation();
-    EXPECT_LT((scalar(F) - by_svd(F)).norm(), 2e-13);
+    EXPECT_LT((scalar(GetParam(), F) - by_svd(F)).norm(), 2e-13);
   }
-  EXPECT_EQ(scalar(Mat3::Zero()), Mat3::Identity());
-  EXPECT_TRUE(scalar(Mat3::Constant(std::numeric_limits<double>::infinity())).array().isNaN().all());
-  EXPECT_EQ(scalar(-Mat3::Identity()), scalar(-Mat3::Identity()));
+  EXPECT_EQ(scalar(GetParam(), Mat3::Zero()), Mat3::Identity());
+  EXPECT_TRUE(scalar(GetParam(), Mat3::Constant(std::numeric_limits<double>::infinity())).array().isNaN().all());
+  EXPECT_EQ(scalar(GetParam(), -Mat3::Identity()), scalar(GetParam(), -Mat3::Identity()));
 }
+
+INSTANTIATE_TEST_SUITE_P(OfOneTet, NearestRotation,
+                         testing::Values(&element::nearest_rotation, &element::rotation_by_eigenvectors),
+                         [](const auto& tested) { return tested.index == 0 ? "ClosedForm" : "Eigenvectors"; });
 
 }  // namespace
 }  // namespace rhexis::test

@@ -1,19 +1,6 @@
 /// Small algebra on packs, and the way between global arrays and lanes. Included once per instruction set, inside its
 /// namespace.
 
-/// dJ/dF, row-major.
-RHEXIS_INLINE void cofactor(const Pack (&F)[9], Pack (&cof)[9]) {
-  cof[0] = F[4] * F[8] - F[5] * F[7];
-  cof[1] = F[5] * F[6] - F[3] * F[8];
-  cof[2] = F[3] * F[7] - F[4] * F[6];
-  cof[3] = F[2] * F[7] - F[1] * F[8];
-  cof[4] = F[0] * F[8] - F[2] * F[6];
-  cof[5] = F[1] * F[6] - F[0] * F[7];
-  cof[6] = F[1] * F[5] - F[2] * F[4];
-  cof[7] = F[2] * F[3] - F[0] * F[5];
-  cof[8] = F[0] * F[4] - F[1] * F[3];
-}
-
 /// kWidth lanes of a batch, from lane `first` on: what every kernel starts from.
 struct TetLanes {
   Pack G[3][3];  ///< gradients of local nodes 1, 2, 3
