@@ -32,7 +32,12 @@ constexpr int kEnergyHalvings = 12;
 /// the state is given up.
 constexpr int kMostIdleFrames = 20;
 constexpr double kProgress = 0.9;
-/// Corrections of a frame that is late, and how much further each is solved.
+/// Of a body in a hand that moves, the relative residual that a correction need not go below: the force is right to
+/// second order in it, and the hand has gone on by then.
+constexpr double kEnough = 0.03;
+/// No correction is asked for less than this, relative: where little is wanting an iteration brings more.
+constexpr double kLeastReduction = 0.9;
+/// Corrections of a frame that is late after the first one, and how much further each is solved.
 constexpr int kLateCorrections = 2;
 constexpr int kLateIterations = 3;
 /// Iterations from which on a preconditioner is made anew at the present state; of a body in a hand that is in time so
@@ -98,7 +103,7 @@ void LiveEquilibrium::follow(std::shared_ptr<const model::Model> model, model::L
   answer_.follow(torn.copied);
   linear_.set_constraint(held_);
   build_tangent();
-  answer_.turn(linear_, free_);
+  answer_.turn(linear_.rotation(), free_);
   refresh_answer(options_.worn_answer, options_.iterations);
   update_compliance();
   now_ = evaluate(state_);
@@ -237,15 +242,28 @@ void LiveEquilibrium::correct_force() {
   force_ = corrected.allFinite() ? corrected : multiplier_;
 }
 
+/// Z is turned with the body to where it will be half way along `gap`: on an arc the chord has the direction of its
+/// middle, and what a straight step stretches a body by that only turns is kappa / mu times as much in its forces.
+void LiveEquilibrium::turn_half_way(const Vec3& gap) {
+  if (gap.isZero(0.0)) return;
+  trial_ = state_;
+  answer_.add(0.5 * (from_gap_ * gap), trial_);
+  linear_.measure(trial_.u, half_way_);
+  answer_.turn(half_way_, free_);
+  update_compliance();
+}
+
 /// The first guess: the last tangent's answer to the move of the hand, shortened where a tet would invert. False: there
 /// is none.
 bool LiveEquilibrium::follow(const Vec3& hand, LiveFrame& frame) {
-  const Vec3 gap = hand - held_->of(state_.u);
+  const Vec3 whole = hand - held_->of(state_.u);
+  hand_moves_ = !whole.isZero(0.0);
   Trial next;
   for (int halving = 0; halving <= kHalvings; ++halving) {
-    const Vec3 df = std::ldexp(1.0, -halving) * (from_gap_ * gap);
+    const Vec3 gap = std::ldexp(1.0, -halving) * whole;
+    turn_half_way(gap);
     trial_ = state_;
-    answer_.add(df, trial_);
+    answer_.add(from_gap_ * gap, trial_);
     next = evaluate(trial_);
     if (!is_admissible(next)) continue;
     frame.reached = halving == 0;
@@ -266,7 +284,10 @@ bool LiveEquilibrium::follow(const Vec3& hand, LiveFrame& frame) {
 LiveSolve LiveEquilibrium::solve_correction(int most, bool careful, LiveFrame& frame) {
   rhs_u_ = -residual_.u;
   rhs_lambda_ = -residual_.lambda;
-  const LiveOrder order{.point = Point::fixed, .tolerance = options_.forcing, .most = most, .careful = careful};
+  const bool has_haste = hand_moves_ && !inertia_;
+  const double wanted = has_haste ? std::min(kLeastReduction, kEnough / now_.relative) : 0.0;
+  const LiveOrder order{
+      .point = Point::fixed, .tolerance = std::max(options_.forcing, wanted), .most = most, .careful = careful};
   if (held_ && frame.linear_iterations == 0) {
     PointAnswer::Beside beside{order, rhs_u_, rhs_lambda_, du_, dlambda_, {}};
     const PointAnswer::Report report =
@@ -285,7 +306,7 @@ LiveSolve LiveEquilibrium::solve_correction(int most, bool careful, LiveFrame& f
 /// One Newton correction that leaves the point where it is. False: none was taken.
 bool LiveEquilibrium::correct(LiveFrame& frame) {
   build_tangent();
-  if (held_) answer_.turn(linear_, free_);
+  if (held_) answer_.turn(linear_.rotation(), free_);
   const int most = (now_.relative > options_.late ? kLateIterations : 1) * options_.iterations;
   for (const bool careful : {false, true}) {
     const LiveSolve solve = solve_correction(most, careful, frame);
@@ -381,13 +402,16 @@ LiveFrame LiveEquilibrium::advance(const Vec3* hand) {
   if (linear_.is_refreshing()) beside.emplace();
   frame.reached = hand == nullptr || now_.relative <= options_.late || begun_;
   begun_ = false;
+  hand_moves_ = false;
   const bool stays = hand != nullptr && frame.reached && !follow(*hand, frame);
   if (stays && !inertia_) {  // the step of a body with mass goes on all the same
     frame.residual = now_.relative;
     return frame;
   }
-  const int most = std::max(now_.relative > options_.late ? kLateCorrections : 0, options_.corrections);
-  while (frame.corrections < most && now_.relative > wanted_residual()) {
+  const auto most = [&] {
+    return now_.relative > options_.late ? std::max(kLateCorrections, options_.corrections) : options_.corrections;
+  };
+  while (frame.corrections < most() && now_.relative > wanted_residual()) {
     if (correct(frame)) continue;
     frame.gave_up = !held_ && frame.corrections == 0;  // nothing else will move it
     break;

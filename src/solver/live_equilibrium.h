@@ -34,7 +34,7 @@ struct LiveOptions {
   double tolerance = 1e-4;   ///< relative residual below which a frame needs no (further) correction
   double at_rest = 1e-7;     ///< the same where nothing is held and there is no haste, if it is the smaller
   double forcing = 0.3;      ///< relative residual of the linear solve of a correction
-  int iterations = 6;        ///< of conjugate gradients in it, at most
+  int iterations = 5;        ///< of conjugate gradients in it, at most
   double late = 0.1;         ///< relative residual above which the hand is not followed further: late, not wrong
   double worn_answer = 0.2;  ///< relative residual above which a column of Z is solved for again, one a frame
 };
@@ -119,6 +119,7 @@ class LiveEquilibrium {
   }
   void make_room();
   LiveFrame advance(const Vec3* hand);
+  void turn_half_way(const Vec3& gap);
   bool follow(const Vec3& hand, LiveFrame& frame);
   bool correct(LiveFrame& frame);
   bool take_correction(bool downhill_only);
@@ -158,6 +159,7 @@ class LiveEquilibrium {
   Mat3 from_gap_ = Mat3::Zero();  ///< (N Z)^-1
 
   model::State trial_;
+  std::vector<Mat3> half_way_;   ///< rotations of the nodes there
   model::State good_;            ///< the last one near to equilibrium, of a body with mass of the step under way
   double least_ = 0.0;           ///< N, residual of the frames since it was late, or a time step began, the least
   int idle_frames_ = 0;          ///< such frames in a row that have not lessened it
@@ -165,6 +167,7 @@ class LiveEquilibrium {
   bool worn_ = false;            ///< the frame has found the preconditioner wanting
   int iterations_when_new_ = 0;  ///< of the first correction with it; 0: there was none
   bool begun_ = false;           ///< a time step, since the last frame
+  bool hand_moves_ = false;      ///< in this frame
   double size_of_body_ = 0.0;    ///< m
   double small_force_ = 0.0;     ///< N, the least since it took hold
   VectorX du_, dlambda_, rhs_u_, rhs_lambda_;

@@ -87,6 +87,8 @@ class LiveLinear {
   void set_tangent(const linalg::SaddleMatrix& K, const model::State& state);
   /// Per node, how far it had turned at the last tangent.
   [[nodiscard]] const std::vector<Mat3>& rotation() const { return rotation_; }
+  /// The same at displacements u.
+  void measure(const VectorX& u, std::vector<Mat3>& out) const { rotations_.measure(u, out); }
   /// N of the solves that are to leave N x = 0: the displacement of the point. Empty: there is none.
   void set_constraint(const std::optional<HeldPoint>& point);
   /// P~^-1 N^T with the pressures that go with it, by columns: a first answer to the hand, positive definite whatever

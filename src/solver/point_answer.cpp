@@ -34,8 +34,7 @@ void PointAnswer::follow(std::span<const std::int32_t> copied) {
   }
 }
 
-void PointAnswer::turn(const LiveLinear& linear, const linalg::FreeDofs& free) {
-  const std::vector<Mat3>& now = linear.rotation();
+void PointAnswer::turn(const std::vector<Mat3>& now, const linalg::FreeDofs& free) {
   Mat3 of_point = Mat3::Zero();
   for (int k = 0; k < point_.count; ++k) {
     const auto node = static_cast<std::size_t>(point_.node[static_cast<std::size_t>(k)]);

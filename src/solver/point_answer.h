@@ -41,8 +41,8 @@ class PointAnswer {
   void begin(const HeldPoint& point, LiveLinear& linear);
   /// The body has torn and has new nodes, copies of these.
   void follow(std::span<const std::int32_t> copied);
-  /// As it would be of a body that has done nothing since but turn: T Z R^T, R the turn of the point.
-  void turn(const LiveLinear& linear, const linalg::FreeDofs& free);
+  /// As it would be of a body that has done nothing since but turn to `now`: T Z R^T, R the turn of the point.
+  void turn(const std::vector<Mat3>& now, const linalg::FreeDofs& free);
   /// K dZ = N^T - K Z, of all columns that need it, side by side.
   Report refresh(const linalg::SaddleMatrix& K, const linalg::FreeDofs& free, LiveLinear& linear,
                  const Wanted& wanted) {
