@@ -19,9 +19,10 @@ namespace {
 constexpr int kHalvings = 4;
 /// A correction that leaves more than this times the residual is not taken. Moves out of bending stretch first.
 constexpr double kGrowth = 4.0;
-/// Of worn_answer: the residual to which Z is solved for when the hand takes hold, and where it stands still; in so
-/// many iterations at most: a body that is taken hold of while it comes back from far has a preconditioner that is
-/// worn.
+/// Of worn_answer: the residual to which Z is solved for when the hand takes hold, and where it stands still, which it
+/// mostly does at first; in so many iterations at most: a body that is taken hold of while it comes back from far has a
+/// preconditioner that is worn.
+constexpr double kFirstAnswer = 0.5;
 constexpr double kStillAnswer = 0.2;
 constexpr int kMostFirstIterations = 24;
 /// Of the body's size: what takes less force to move the hand by is near to rest, and a residual is held against that.
@@ -174,7 +175,7 @@ void LiveEquilibrium::hold(const HeldPoint& point) {
   linear_.set_constraint(held_);
   build_tangent();
   answer_.begin(point, linear_);
-  refresh_answer(kStillAnswer * options_.worn_answer, kMostFirstIterations);
+  refresh_answer(kFirstAnswer * options_.worn_answer, kMostFirstIterations);
   update_compliance();
   now_ = evaluate(state_);
 }
