@@ -55,7 +55,7 @@ class LiveEquilibrium : public testing::TestWithParam<model::ModelKind> {
     FAIL() << "not at rest after 200 frames";
   }
   /// The force that holds a node at `hand`, by Newton from `near`.
-  Vec3 converged(model::State near, std::int32_t node, const Vec3& hand, VectorX* u = nullptr) const {
+  Vec3 converged(model::State near, std::int32_t node, const Vec3& hand, model::State* at = nullptr) const {
     model::Loading held = loading_;
     for (std::int32_t c = 0; c < 3; ++c) held.supports.push_back({3 * node + c, hand[c]});
     std::sort(held.supports.begin(), held.supports.end(), [](const auto& a, const auto& b) { return a.dof < b.dof; });
@@ -64,7 +64,7 @@ class LiveEquilibrium : public testing::TestWithParam<model::ModelKind> {
     options.tolerance = 1e-10;
     const solver::Report report = solver::solve_equilibrium(*model_, held, options, near);
     EXPECT_TRUE(report.converged()) << report.why;
-    if (u != nullptr) *u = near.u;
+    if (at != nullptr) *at = near;
     return report.reaction.segment<3>(3 * Eigen::Index{node});
   }
 
@@ -80,11 +80,12 @@ TEST_P(LiveEquilibrium, AHandThatStaysFeelsTheConvergedForce) {
   const Vec3 hand(0.012, 0.010, -0.004);
   for (int k = 1; k <= 20; ++k) body.step(k / 20.0 * hand);
   rest(body, hand);
-  VectorX u;
-  const Vec3 force = converged(body.state(), node, hand, &u);
+  model::State at;
+  const Vec3 force = converged(body.state(), node, hand, &at);
   EXPECT_LE((body.point() - hand).norm(), 1e-14);
   EXPECT_LE((body.force() - force).norm(), kSettled * force.norm());
-  EXPECT_LE((body.state().u - u).norm(), 1e-4 * u.norm());  // the condition number stands between residual and place
+  EXPECT_LE((body.state().u - at.u).norm(),
+            1e-4 * at.u.norm());  // the condition number stands between residual and place
 }
 
 TEST_P(LiveEquilibrium, TheForceOfAMovingHandIsRightToSecondOrder) {
@@ -104,6 +105,35 @@ TEST_P(LiveEquilibrium, TheForceOfAMovingHandIsRightToSecondOrder) {
   }
   EXPECT_GT(largest, 0.0);
   EXPECT_LT(worst, 0.02 * largest);
+}
+
+TEST_P(LiveEquilibrium, TheFirstGuessGoesAlongTheArcAndNotTheChord) {
+  const std::int32_t node = node_at(Vec3(0.04, 0.02, 0.12));
+  const Vec3 hand(0.0, 0.012, 0.0);
+  const Vec3 move(0.0, 0.004, 0.0);
+  model::State here = model_->initial_state();
+  for (int k = 1; k <= 4; ++k) converged(here, node, k / 4.0 * hand, &here);
+  // No correction, and Z to rounding: what is left is the guess.
+  const solver::LiveOptions only_guess{.corrections = 0, .iterations = 200, .late = 1e9, .worn_answer = 1e-6};
+  const auto residual_of = [&](const model::State& state) {
+    solver::LiveEquilibrium body(model_, loading_, state, only_guess);
+    body.hold(at_node(node));
+    return body.residual();
+  };
+  solver::LiveEquilibrium body(model_, loading_, here, only_guess);
+  body.hold(at_node(node));
+  for (int k = 0; k < 10; ++k) body.step(hand);
+  body.step(hand + move);
+  model::State before, after;
+  constexpr double kPart = 0.01;
+  converged(here, node, hand - kPart * move, &before);
+  converged(here, node, hand + kPart * move, &after);
+  model::State chord = here;
+  chord.u += (after.u - before.u) / (2.0 * kPart);
+  chord.lambda += (after.lambda - before.lambda) / (2.0 * kPart);
+  EXPECT_LT(residual_of(here), 1e-9);
+  // 3 to 8 times nearer: what the straight step stretches the body by is gone, what the move strains it by is not.
+  EXPECT_LT(body.residual(), 0.4 * residual_of(chord));
 }
 
 TEST_P(LiveEquilibrium, TheComplianceIsTheDerivativeOfTheConvergedForce) {
