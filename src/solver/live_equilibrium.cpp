@@ -244,9 +244,11 @@ void LiveEquilibrium::correct_force() {
 }
 
 /// Z is turned with the body to where it will be half way along `gap`: on an arc the chord has the direction of its
-/// middle, and what a straight step stretches a body by that only turns is kappa / mu times as much in its forces.
+/// middle, and what a straight step stretches a body by that only turns is kappa / mu times as much in its forces. Not
+/// of laws that let tets turn inside out: St. Venant-Kirchhoff's gives way where it is pressed, and that stretch keeps
+/// a fast hand from there.
 void LiveEquilibrium::turn_half_way(const Vec3& gap) {
-  if (gap.isZero(0.0)) return;
+  if (gap.isZero(0.0) || model_->allows_inversion()) return;
   trial_ = state_;
   answer_.add(0.5 * (from_gap_ * gap), trial_);
   linear_.measure(trial_.u, half_way_);

@@ -108,6 +108,7 @@ TEST_P(LiveEquilibrium, TheForceOfAMovingHandIsRightToSecondOrder) {
 }
 
 TEST_P(LiveEquilibrium, TheFirstGuessGoesAlongTheArcAndNotTheChord) {
+  if (model_->allows_inversion()) GTEST_SKIP() << "of laws that tell inside from outside";
   const std::int32_t node = node_at(Vec3(0.04, 0.02, 0.12));
   const Vec3 hand(0.0, 0.012, 0.0);
   const Vec3 move(0.0, 0.004, 0.0);
@@ -132,7 +133,7 @@ TEST_P(LiveEquilibrium, TheFirstGuessGoesAlongTheArcAndNotTheChord) {
   chord.u += (after.u - before.u) / (2.0 * kPart);
   chord.lambda += (after.lambda - before.lambda) / (2.0 * kPart);
   EXPECT_LT(residual_of(here), 1e-9);
-  // 3 to 8 times nearer: what the straight step stretches the body by is gone, what the move strains it by is not.
+  // Three times nearer: what the straight step stretches the body by is gone, what the move strains it by is not.
   EXPECT_LT(body.residual(), 0.4 * residual_of(chord));
 }
 
