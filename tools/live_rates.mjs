@@ -67,6 +67,7 @@ async function open(page, program) {
   }
   await page.goto(`http://127.0.0.1:${kPort}/`);
   await page.waitForFunction(() => window.rhexis?.state != null, undefined, { timeout: 60_000 });
+  if (program.exitCode !== null) throw new Error("another program has the port");
 }
 
 /** Takes hold of the front of the rod; gives the pixel, and pixels a metre of the hand's plane. */
@@ -115,10 +116,11 @@ async function measure(browser, scene, nodes, model, seconds, speed) {
   );
   const ended = new Promise((done) => program.once("exit", done));
   const page = await browser.newPage({ viewport: { width: 800, height: 600 } });
+  let isOver = false;
+  let led = Promise.resolve(0);
   try {
     await open(page, program);
-    let isOver = false;
-    const led = lead(page, await takeHold(page), speed, () => isOver);
+    led = lead(page, await takeHold(page), speed, () => isOver);
     await page.waitForTimeout(kSettle);
     const first = await read(page);
     const each = [];
@@ -144,6 +146,8 @@ async function measure(browser, scene, nodes, model, seconds, speed) {
       speed: fast,
     };
   } finally {
+    isOver = true;
+    await led.catch(() => 0);  // what went wrong is on its way already
     await page.close();
     program.kill("SIGINT");
     await ended;

@@ -33,11 +33,6 @@ constexpr int kEnergyHalvings = 12;
 /// the state is given up.
 constexpr int kMostIdleFrames = 20;
 constexpr double kProgress = 0.9;
-/// Of a body in a hand that moves, the relative residual that a correction need not go below: the force is right to
-/// second order in it, and the hand has gone on by then.
-constexpr double kEnough = 0.03;
-/// No correction is asked for less than this, relative: where little is wanting an iteration brings more.
-constexpr double kLeastReduction = 0.9;
 /// Corrections of a frame that is late after the first one, and how much further each is solved.
 constexpr int kLateCorrections = 2;
 constexpr int kLateIterations = 3;
@@ -260,7 +255,6 @@ void LiveEquilibrium::turn_half_way(const Vec3& gap) {
 /// is none.
 bool LiveEquilibrium::follow(const Vec3& hand, LiveFrame& frame) {
   const Vec3 whole = hand - held_->of(state_.u);
-  hand_moves_ = !whole.isZero(0.0);
   Trial next;
   for (int halving = 0; halving <= kHalvings; ++halving) {
     const Vec3 gap = std::ldexp(1.0, -halving) * whole;
@@ -287,10 +281,7 @@ bool LiveEquilibrium::follow(const Vec3& hand, LiveFrame& frame) {
 LiveSolve LiveEquilibrium::solve_correction(int most, bool careful, LiveFrame& frame) {
   rhs_u_ = -residual_.u;
   rhs_lambda_ = -residual_.lambda;
-  const bool has_haste = hand_moves_ && !inertia_;
-  const double wanted = has_haste ? std::min(kLeastReduction, kEnough / now_.relative) : 0.0;
-  const LiveOrder order{
-      .point = Point::fixed, .tolerance = std::max(options_.forcing, wanted), .most = most, .careful = careful};
+  const LiveOrder order{.point = Point::fixed, .tolerance = options_.forcing, .most = most, .careful = careful};
   if (held_ && frame.linear_iterations == 0) {
     PointAnswer::Beside beside{order, rhs_u_, rhs_lambda_, du_, dlambda_, {}};
     const PointAnswer::Report report =
@@ -405,7 +396,6 @@ LiveFrame LiveEquilibrium::advance(const Vec3* hand) {
   if (linear_.is_refreshing()) beside.emplace();
   frame.reached = hand == nullptr || now_.relative <= options_.late || begun_;
   begun_ = false;
-  hand_moves_ = false;
   const bool stays = hand != nullptr && frame.reached && !follow(*hand, frame);
   if (stays && !inertia_) {  // the step of a body with mass goes on all the same
     frame.residual = now_.relative;

@@ -167,7 +167,6 @@ class LiveEquilibrium {
   bool worn_ = false;            ///< the frame has found the preconditioner wanting
   int iterations_when_new_ = 0;  ///< of the first correction with it; 0: there was none
   bool begun_ = false;           ///< a time step, since the last frame
-  bool hand_moves_ = false;      ///< in this frame
   double size_of_body_ = 0.0;    ///< m
   double small_force_ = 0.0;     ///< N, the least since it took hold
   VectorX du_, dlambda_, rhs_u_, rhs_lambda_;
