@@ -21,7 +21,6 @@ const { values: options } = parseArgs({
     command: { type: "string", default: join(repository, "build/release/bin/rhexis") },
   },
 });
-const kPort = 18735;
 const kSettle = 2000; // ms, after the hand has set out: the page is drawn, the rates are those of the motion
 const kRadius = 0.006; // m, of the circle
 const kSides = [[0.01, 0.0, 0.05], [-0.01, 0.0, 0.05]]; // m; the hand takes hold half way between where they are seen
@@ -55,19 +54,21 @@ to = [0.0, 0.0, 0.03]
 through = [0.0, 1.0, 0.0]
 `;
 
-async function open(page, program) {
-  for (let tries = 0; ; ++tries) {  // not with the page, whose error pages take the core that the body is prepared on
-    try {
-      await fetch(`http://127.0.0.1:${kPort}/`);
-      break;
-    } catch (error) {
-      if (tries === 600 || program.exitCode !== null) throw error;
-      await new Promise((done) => setTimeout(done, 100));
-    }
-  }
-  await page.goto(`http://127.0.0.1:${kPort}/`);
-  await page.waitForFunction(() => window.rhexis?.state != null, undefined, { timeout: 60_000 });
-  if (program.exitCode !== null) throw new Error("another program has the port");
+/** Starts the program; `url` is the page's, once it can be had, and `ended` comes after the program, however it ends. */
+function start(command, args) {
+  const child = spawn(command, [...args, "--port", "0", "--no-browser"], { cwd: repository, stdio: ["ignore", "pipe", "inherit"] });
+  const ended = new Promise((done) => child.once("exit", done).once("error", done));
+  const url = new Promise((found, fail) => {
+    let said = "";
+    child.stdout.on("data", (text) => {
+      said += text;
+      const page = /^page +(http\S+)$/m.exec(said);
+      if (page !== null) found(page[1]);
+    });
+    child.once("error", fail);
+    child.once("exit", () => fail(new Error("the program ended before it had a page")));
+  });
+  return { child, url, ended };
 }
 
 /** Takes hold of the front of the rod; gives the pixel, and pixels a metre of the hand's plane. */
@@ -109,17 +110,14 @@ const read = (page) =>
   });
 
 async function measure(browser, scene, nodes, model, seconds, speed) {
-  const program = spawn(
-    options.command,
-    ["play", scene, "--set", `mesh.nodes=${nodes}`, "--set", `model.kind=${model}`, "--port", `${kPort}`, "--no-browser"],
-    { cwd: repository, stdio: ["ignore", "ignore", "inherit"] },
-  );
-  const ended = new Promise((done) => program.once("exit", done));
+  const program = start(options.command, ["play", scene, "--set", `mesh.nodes=${nodes}`, "--set", `model.kind=${model}`]);
+  const url = await program.url;  // before there is a page, which would take the core that the body is prepared on
   const page = await browser.newPage({ viewport: { width: 800, height: 600 } });
   let isOver = false;
   let led = Promise.resolve(0);
   try {
-    await open(page, program);
+    await page.goto(url);
+    await page.waitForFunction(() => window.rhexis?.state != null);
     led = lead(page, await takeHold(page), speed, () => isOver);
     await page.waitForTimeout(kSettle);
     const first = await read(page);
@@ -130,8 +128,8 @@ async function measure(browser, scene, nodes, model, seconds, speed) {
     }
     const last = each[each.length - 1];
     isOver = true;
-    const fast = await led;
-    if (!last.held) throw new Error(`${model}, ${nodes} nodes: the hand was let go`);
+    const reached = await led;
+    if (!last.held) throw new Error("the hand was let go");
     const ticks = last.tick - first.tick;
     const sorted = each.map((now) => now.physicsHz).sort((a, b) => a - b);
     return {
@@ -143,20 +141,25 @@ async function measure(browser, scene, nodes, model, seconds, speed) {
       age: Math.max(...each.map((now) => now.snapshotAgeMs)),
       pictures: (1000 * (last.pictures - first.pictures)) / ticks,
       realtime: last.realtime,
-      speed: fast,
+      speed: reached,
     };
   } finally {
     isOver = true;
     await led.catch(() => 0);  // what went wrong is on its way already
     await page.close();
-    program.kill("SIGINT");
-    await ended;
+    program.child.kill("SIGINT");
+    await program.ended;
   }
 }
 
+const seconds = Number(options.seconds);
+const speed = Number(options.speed);
+if (!(seconds >= 1) || !(speed > 0)) {
+  console.error("live_rates: --seconds is 1 or more, --speed (m/s) more than 0");
+  process.exit(2);
+}
 const folder = mkdtempSync(join(tmpdir(), "rhexis-"));
 const scene = join(folder, "rod.toml");
-const seconds = Number(options.seconds);
 writeFileSync(scene, rod);
 const browser = await chromium.launch({
   executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
@@ -167,8 +170,11 @@ try {
   console.log("| ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
   for (const nodes of options.nodes.split(",")) {
     for (const model of options.models.split(",")) {
-      const found = await measure(browser, scene, nodes, model, seconds, Number(options.speed)).catch((error) => console.error(error.message));
-      if (!found) continue;
+      const found = await measure(browser, scene, nodes, model, seconds, speed).catch((error) => console.error(`live_rates: ${model}, ${nodes} nodes: ${error.message}`));
+      if (!found) {
+        process.exitCode = 1;
+        continue;
+      }
       console.log(
         `| ${found.tets} | ${model} | ${found.frames.toFixed(0)} | ${found.least.toFixed(0)} | ${(100 * found.kept).toFixed(2)}%${found.realtime ? "" : " (no real-time priority)"} ` +
           `| ${found.late.toFixed(1)} | ${found.age.toFixed(0)} | ${found.pictures.toFixed(0)} | ${(1000 * found.speed).toFixed(0)} |`,

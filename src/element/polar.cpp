@@ -12,6 +12,7 @@ inline constexpr int kWidth = 1;
 
 // clang-format off
 #include "element/simd/pack.h"
+#include "element/simd/cofactor.h"
 #include "element/simd/polar.h"
 // clang-format on
 

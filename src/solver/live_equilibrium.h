@@ -119,7 +119,7 @@ class LiveEquilibrium {
   }
   void make_room();
   LiveFrame advance(const Vec3* hand);
-  void turn_half_way(const Vec3& gap);
+  void guess(const Vec3& gap);
   bool follow(const Vec3& hand, LiveFrame& frame);
   bool correct(LiveFrame& frame);
   bool take_correction(bool downhill_only);
@@ -159,7 +159,7 @@ class LiveEquilibrium {
   Mat3 from_gap_ = Mat3::Zero();  ///< (N Z)^-1
 
   model::State trial_;
-  std::vector<Mat3> half_way_;   ///< rotations of the nodes there
+  std::vector<Mat3> half_way_;   ///< rotations of the nodes in the middle of a move
   model::State good_;            ///< the last one near to equilibrium, of a body with mass of the step under way
   double least_ = 0.0;           ///< N, residual of the frames since it was late, or a time step began, the least
   int idle_frames_ = 0;          ///< such frames in a row that have not lessened it

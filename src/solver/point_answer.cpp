@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <Eigen/LU>
+
 namespace rhexis::solver {
 namespace {
 
@@ -34,7 +36,8 @@ void PointAnswer::follow(std::span<const std::int32_t> copied) {
   }
 }
 
-void PointAnswer::turn(const std::vector<Mat3>& now, const linalg::FreeDofs& free) {
+void PointAnswer::turn(const LiveLinear& linear, const linalg::FreeDofs& free) {
+  const std::vector<Mat3>& now = linear.rotation();
   Mat3 of_point = Mat3::Zero();
   for (int k = 0; k < point_.count; ++k) {
     const auto node = static_cast<std::size_t>(point_.node[static_cast<std::size_t>(k)]);
@@ -171,6 +174,25 @@ Mat3 PointAnswer::compliance() const {
 
 void PointAnswer::add(const Vec3& f, model::State& state) const {
   state.u.noalias() += u_.leftCols<3>() * f;
+  if (lambda_.rows() > 0) state.lambda.noalias() += lambda_.leftCols<3>() * f;
+}
+
+void PointAnswer::add_turned(const std::vector<Mat3>& now, const Vec3& gap, const linalg::FreeDofs& free,
+                             model::State& state) {
+  const auto turn = [&](std::size_t node) { return Mat3(now[node] * rotation_[node].transpose()); };
+  Mat3 of_point = Mat3::Zero();  // N T Z
+  for (int k = 0; k < point_.count; ++k) {
+    const std::int32_t node = point_.node[static_cast<std::size_t>(k)];
+    of_point += point_.weight[k] * turn(static_cast<std::size_t>(node)) * u_.block<3, 3>(3 * Eigen::Index{node}, 0);
+  }
+  const Vec3 f = of_point.inverse() * gap;
+  move_.resize(u_.rows());
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(3 * i);
+    move_.segment<3>(at) = turn(i) * (u_.block<3, 3>(at, 0) * f);
+  }
+  linalg::clear_held(free, move_);
+  state.u += move_;
   if (lambda_.rows() > 0) state.lambda.noalias() += lambda_.leftCols<3>() * f;
 }
 

@@ -41,8 +41,8 @@ class PointAnswer {
   void begin(const HeldPoint& point, LiveLinear& linear);
   /// The body has torn and has new nodes, copies of these.
   void follow(std::span<const std::int32_t> copied);
-  /// As it would be of a body that has done nothing since but turn to `now`: T Z R^T, R the turn of the point.
-  void turn(const std::vector<Mat3>& now, const linalg::FreeDofs& free);
+  /// As it would be of a body that has done nothing since but turn: T Z R^T, R the turn of the point.
+  void turn(const LiveLinear& linear, const linalg::FreeDofs& free);
   /// K dZ = N^T - K Z, of all columns that need it, side by side.
   Report refresh(const linalg::SaddleMatrix& K, const linalg::FreeDofs& free, LiveLinear& linear,
                  const Wanted& wanted) {
@@ -58,6 +58,8 @@ class PointAnswer {
   [[nodiscard]] Mat3 compliance() const;
   /// (u, lambda) += Z f.
   void add(const Vec3& f, model::State& state) const;
+  /// (u, lambda) += T Z f, T the turn of the nodes to `now`, f such that the point moves by `gap`, m.
+  void add_turned(const std::vector<Mat3>& now, const Vec3& gap, const linalg::FreeDofs& free, model::State& state);
   /// Z^T r.
   [[nodiscard]] Vec3 dot(const model::Residual& r) const;
 
@@ -79,6 +81,7 @@ class PointAnswer {
   HeldPoint point_;
   linalg::FourLanes u_, lambda_;  ///< columns of Z, and one of zeros
   std::vector<Mat3> rotation_;    ///< per node, where Z belongs
+  VectorX move_;                  ///< work space of add_turned, m
   linalg::SaddleResidual scale_;
   std::tuple<Work<2>, Work<4>> work_;
 };

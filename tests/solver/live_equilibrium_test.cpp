@@ -84,8 +84,8 @@ TEST_P(LiveEquilibrium, AHandThatStaysFeelsTheConvergedForce) {
   const Vec3 force = converged(body.state(), node, hand, &at);
   EXPECT_LE((body.point() - hand).norm(), 1e-14);
   EXPECT_LE((body.force() - force).norm(), kSettled * force.norm());
-  EXPECT_LE((body.state().u - at.u).norm(),
-            1e-4 * at.u.norm());  // the condition number stands between residual and place
+  // The condition number stands between residual and place.
+  EXPECT_LE((body.state().u - at.u).norm(), 1e-4 * at.u.norm());
 }
 
 TEST_P(LiveEquilibrium, TheForceOfAMovingHandIsRightToSecondOrder) {
@@ -108,13 +108,13 @@ TEST_P(LiveEquilibrium, TheForceOfAMovingHandIsRightToSecondOrder) {
 }
 
 TEST_P(LiveEquilibrium, TheFirstGuessGoesAlongTheArcAndNotTheChord) {
-  if (model_->allows_inversion()) GTEST_SKIP() << "of laws that tell inside from outside";
+  if (model_->allows_inversion()) GTEST_SKIP() << "this law goes along the chord";
   const std::int32_t node = node_at(Vec3(0.04, 0.02, 0.12));
   const Vec3 hand(0.0, 0.012, 0.0);
   const Vec3 move(0.0, 0.004, 0.0);
   model::State here = model_->initial_state();
   for (int k = 1; k <= 4; ++k) converged(here, node, k / 4.0 * hand, &here);
-  // No correction, and Z to rounding: what is left is the guess.
+  // No correction, and Z to a millionth: what is left is the guess.
   const solver::LiveOptions only_guess{.corrections = 0, .iterations = 200, .late = 1e9, .worn_answer = 1e-6};
   const auto residual_of = [&](const model::State& state) {
     solver::LiveEquilibrium body(model_, loading_, state, only_guess);

@@ -1,18 +1,5 @@
 /// The rotation nearest to F, batched. Included once per instruction set, inside its namespace.
 
-/// dJ/dF, row-major.
-RHEXIS_INLINE void cofactor(const Pack (&F)[9], Pack (&cof)[9]) {
-  cof[0] = F[4] * F[8] - F[5] * F[7];
-  cof[1] = F[5] * F[6] - F[3] * F[8];
-  cof[2] = F[3] * F[7] - F[4] * F[6];
-  cof[3] = F[2] * F[7] - F[1] * F[8];
-  cof[4] = F[0] * F[8] - F[2] * F[6];
-  cof[5] = F[1] * F[6] - F[0] * F[7];
-  cof[6] = F[1] * F[5] - F[2] * F[4];
-  cof[7] = F[2] * F[3] - F[0] * F[5];
-  cof[8] = F[0] * F[4] - F[1] * F[3];
-}
-
 /// The rotation R (det +1) that maximises tr(R^T F), also for inverted F, and t = tr(R^T F),
 /// zeta = (t^2 - |F|^2)/2 t - det F = (s1 + s2)(s2 + s3)(s3 + s1) of the singular values, s3 signed.
 struct Polar {

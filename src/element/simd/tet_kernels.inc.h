@@ -20,8 +20,9 @@ inline constexpr int kWidth = RHEXIS_SIMD_WIDTH;
 // In this order: each builds on those before it.
 // clang-format off
 #include "element/simd/pack.h"
-#include "element/simd/polar.h"
+#include "element/simd/cofactor.h"
 #include "element/simd/tet_math.h"
+#include "element/simd/polar.h"
 #include "element/simd/responses.h"
 #include "element/simd/kernel_table.h"
 // clang-format on
